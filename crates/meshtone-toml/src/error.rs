@@ -31,7 +31,6 @@ pub enum ErrorKind {
 /// # Ok::<(), meshtone_toml::TomlError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
-#[non_exhaustive]
 pub struct TomlError {
     /// Kind of the mistake.
     pub kind: ErrorKind,
@@ -89,6 +88,21 @@ impl TomlError {
         (!words.is_empty()).then(|| words.join(" of "))
     }
 
+    /// An error about `NAME.…` as one about that entry of the list of that name.
+    ///
+    /// # Arguments
+    /// * `name` - the list's: `fault` or `sensor`
+    /// * `index` - which of its entries, from 0
+    /// * `entries` - how many there are; a single one needs no number
+    pub fn in_entry(mut self, name: &str, index: usize, entries: usize) -> Self {
+        if let Some(rest) = self.key.strip_prefix(name).filter(|_| entries > 1) {
+            self.key = format!("{name}[{index}]{rest}");
+            self.problem = with_number(&self.problem, name, index);
+            self.help = self.help.map(|help| with_number(&help, name, index));
+        }
+        self
+    }
+
     /// Returns the error with another kind.
     ///
     /// # Arguments
@@ -126,6 +140,20 @@ impl TomlError {
     }
 }
 
+/// A text about one of several entries of a list, whose keys `NAME.…` get its number.
+fn with_number(text: &str, name: &str, index: usize) -> String {
+    let end = format!("{name}.");
+    let mut parts = text.split(&end);
+    let mut numbered = parts.next().unwrap_or_default().to_owned();
+    for rest in parts {
+        // A sentence may end with the word.
+        let is_key = rest.starts_with(|letter: char| letter.is_ascii_lowercase());
+        numbered += &if is_key { format!("{name}[{index}].") } else { end.clone() };
+        numbered += rest;
+    }
+    numbered
+}
+
 /// `the 2nd fault` for `fault[1]`.
 fn entry_in_words(segment: &str) -> Option<String> {
     let (name, index) = segment.strip_suffix(']')?.split_once('[')?;
@@ -157,5 +185,20 @@ mod tests {
         // A number in a list is no place.
         assert_eq!(message("rig.damping_ratio[2]", "0.5"), "rig.damping_ratio[2] = 0.5: no");
         assert_eq!(message("gears.module_mm", "0"), "gears.module_mm = 0: no");
+    }
+
+    #[test]
+    fn texts_about_one_of_several_faults_name_it() {
+        let error = || {
+            TomlError::new("fault.end", 0.1, "must be more than fault.start, 0.2")
+                .with_help("mend the fault. Or raise fault.end")
+        };
+        let second = error().in_entry("fault", 1, 2);
+        assert_eq!(
+            (second.key.as_str(), second.problem.as_str()),
+            ("fault[1].end", "must be more than fault[1].start, 0.2")
+        );
+        assert_eq!(second.help.as_deref(), Some("mend the fault. Or raise fault[1].end"));
+        assert_eq!(error().in_entry("fault", 0, 1), error());
     }
 }

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use meshtone_toml::{ErrorKind, TomlError};
+use meshtone_toml::TomlError;
 use serde::{Deserialize, Serialize};
 
 /// A scenario that cannot be simulated: which key, what it says, what is allowed.
@@ -17,154 +17,45 @@ use serde::{Deserialize, Serialize};
 /// assert_eq!((error.kind, error.line), (ErrorKind::NotAllowed, Some(2)));
 /// assert_eq!(error.to_string(), "line 2: gears.module_mm = -3.0: must be more than 0 mm");
 /// ```
-#[derive(Debug, Clone, PartialEq, Eq)]
-#[non_exhaustive]
-pub struct ScenarioError {
-    /// Kind of the mistake.
-    pub kind: ErrorKind,
-    /// Dotted key in the scenario file, for example `gears.module_mm`, or
-    /// `rig.damping_ratio[2]` for the third entry of an array. Empty where the text is not TOML.
-    pub key: String,
-    /// The offending value as it was given; empty where a key is missing.
-    pub value: String,
-    /// The problem, and what is allowed.
-    pub problem: String,
-    /// Advice, where `problem` does not make it plain.
-    pub help: Option<String>,
-    /// 1-based line in the TOML text, where the scenario came from one.
-    pub line: Option<usize>,
+pub type ScenarioError = TomlError;
+
+/// Foundation coefficients with which a healthy pair of teeth would not be stiff.
+///
+/// # Arguments
+/// * `key`, `help` - of [`NamedGears::foundation`](crate::wheel::NamedGears::foundation)
+pub(crate) fn not_stiff((key, help): (String, &str)) -> ScenarioError {
+    let problem =
+        "the compliance of the healthy tooth pair would not be positive at every point of contact; must be";
+    ScenarioError::new(key, "", problem).with_help(help)
 }
 
-impl std::error::Error for ScenarioError {}
-
-impl fmt::Display for ScenarioError {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        TomlError::from(self.clone()).fmt(formatter)
-    }
+/// More pairs in contact at once than the model of contact looks at.
+///
+/// # Arguments
+/// * `contact_ratio`, `most` - (-) the contact ratio, and the largest
+/// * `whole`, `angle` - keys of the pair and of its pressure angle
+pub(crate) fn too_many_pairs(contact_ratio: f64, most: f64, [whole, angle]: [String; 2]) -> ScenarioError {
+    let problem = format!(
+        "has a contact ratio of {contact_ratio:.2} between the chamfers; must be at most {most:.1} under the model of contact"
+    );
+    ScenarioError::new(whole, "", problem)
+        .with_help(format!("raise {angle}; of one pair, model = \"linear\" has no such limit"))
 }
 
-/// A scenario file that cannot be read is a scenario that cannot be simulated.
-impl From<TomlError> for ScenarioError {
-    fn from(error: TomlError) -> Self {
-        let TomlError { kind, key, value, problem, help, line, .. } = error;
-        Self { kind, key, value, problem, help, line }
-    }
+/// Flanks that close along the face, and no load that could decide how much of it bears.
+///
+/// # Arguments
+/// * `key`, `uneven` - of [`NamedGears::load`](crate::wheel::NamedGears::load)
+pub(crate) fn no_load_along_the_face((key, uneven): (String, String)) -> ScenarioError {
+    let problem = "the mesh is unloaded, but its flanks are misaligned along the face; must be loaded, because the load determines how much of the face is in contact";
+    ScenarioError::new(key, "", problem)
+        .with_help(format!("load the mesh by operation.brake_torque_nm, or set {uneven} to 0"))
 }
 
-/// A scenario that cannot be simulated, as an error of the text that it stands in.
-impl From<ScenarioError> for TomlError {
-    fn from(error: ScenarioError) -> Self {
-        let ScenarioError { kind, key, value, problem, help, line } = error;
-        let mut error = Self::new(key, value, problem).of_kind(kind).at_line(line);
-        error.help = help;
-        error
-    }
-}
-
-impl ScenarioError {
-    /// An error about `key`, whose `value` breaks a rule.
-    ///
-    /// # Arguments
-    /// * `key` - dotted key in the scenario file
-    /// * `value` - the value as given; empty where it is missing
-    /// * `problem` - what is wrong and what is allowed
-    pub fn new(key: impl Into<String>, value: impl ToString, problem: impl Into<String>) -> Self {
-        TomlError::new(key, value, problem).into()
-    }
-
-    /// Returns the error with advice.
-    ///
-    /// # Arguments
-    /// * `help` - what the user can do
-    pub fn with_help(mut self, help: impl Into<String>) -> Self {
-        self.help = Some(help.into());
-        self
-    }
-
-    /// Foundation coefficients with which a healthy pair of teeth would not be stiff.
-    ///
-    /// # Arguments
-    /// * `key`, `help` - of [`NamedGears::foundation`](crate::wheel::NamedGears::foundation)
-    pub(crate) fn not_stiff((key, help): (String, &str)) -> Self {
-        let problem = "the compliance of the healthy tooth pair would not be positive at every point of contact; must be";
-        Self::new(key, "", problem).with_help(help)
-    }
-
-    /// More pairs in contact at once than the model of contact looks at.
-    ///
-    /// # Arguments
-    /// * `contact_ratio`, `most` - (-) the contact ratio, and the largest
-    /// * `whole`, `angle` - keys of the pair and of its pressure angle
-    pub(crate) fn too_many_pairs(contact_ratio: f64, most: f64, [whole, angle]: [String; 2]) -> Self {
-        let problem = format!(
-            "has a contact ratio of {contact_ratio:.2} between the chamfers; must be at most {most:.1} under the model of contact"
-        );
-        Self::new(whole, "", problem)
-            .with_help(format!("raise {angle}; of one pair, model = \"linear\" has no such limit"))
-    }
-
-    /// Flanks that close along the face, and no load that could decide how much of it bears.
-    ///
-    /// # Arguments
-    /// * `key`, `uneven` - of [`NamedGears::load`](crate::wheel::NamedGears::load)
-    pub(crate) fn no_load_along_the_face((key, uneven): (String, String)) -> Self {
-        let problem = "the mesh is unloaded, but its flanks are misaligned along the face; must be loaded, because the load determines how much of the face is in contact";
-        Self::new(key, "", problem)
-            .with_help(format!("load the mesh by operation.brake_torque_nm, or set {uneven} to 0"))
-    }
-
-    /// Damage that leaves no tooth that could carry a load.
-    pub(crate) fn nothing_left() -> Self {
-        let problem = "the faults leave no pair of teeth that could touch; at least one must be left";
-        Self::new("fault", "", problem).with_help("remove some of the faults")
-    }
-
-    /// Returns the error under another key, as of a scenario that stands within another file.
-    ///
-    /// # Arguments
-    /// * `key` - dotted key
-    pub fn with_key(mut self, key: impl Into<String>) -> Self {
-        self.key = key.into();
-        self
-    }
-
-    /// An error about `NAME.…` as one about that entry of the list of that name.
-    ///
-    /// # Arguments
-    /// * `name` - the list's: `fault` or `sensor`
-    /// * `index` - which of its entries, from 0
-    /// * `entries` - how many there are; a single one needs no number
-    pub(crate) fn in_entry(mut self, name: &str, index: usize, entries: usize) -> Self {
-        if let Some(rest) = self.key.strip_prefix(name).filter(|_| entries > 1) {
-            self.key = format!("{name}[{index}]{rest}");
-            self.problem = with_number(&self.problem, name, index);
-            self.help = self.help.map(|help| with_number(&help, name, index));
-        }
-        self
-    }
-
-    /// Returns the error at a line of the file.
-    ///
-    /// # Arguments
-    /// * `line` - 1-based line, where known
-    pub fn at_line(mut self, line: Option<usize>) -> Self {
-        self.line = line;
-        self
-    }
-}
-
-/// A text about one of several entries of a list, whose keys `NAME.…` get its number.
-fn with_number(text: &str, name: &str, index: usize) -> String {
-    let end = format!("{name}.");
-    let mut parts = text.split(&end);
-    let mut numbered = parts.next().unwrap_or_default().to_owned();
-    for rest in parts {
-        // A sentence may end with the word.
-        let is_key = rest.starts_with(|letter: char| letter.is_ascii_lowercase());
-        numbered += &if is_key { format!("{name}[{index}].") } else { end.clone() };
-        numbered += rest;
-    }
-    numbered
+/// Damage that leaves no tooth that could carry a load.
+pub(crate) fn nothing_left() -> ScenarioError {
+    let problem = "the faults leave no pair of teeth that could touch; at least one must be left";
+    ScenarioError::new("fault", "", problem).with_help("remove some of the faults")
 }
 
 /// Why there is no simulation.
@@ -328,25 +219,5 @@ impl ScenarioWarning {
 impl fmt::Display for ScenarioWarning {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(formatter, "{}: {}", self.key, self.message)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn texts_about_one_of_several_faults_name_it() {
-        let error = || {
-            ScenarioError::new("fault.end", 0.1, "must be more than fault.start, 0.2")
-                .with_help("mend the fault. Or raise fault.end")
-        };
-        let second = error().in_entry("fault", 1, 2);
-        assert_eq!(
-            (second.key.as_str(), second.problem.as_str()),
-            ("fault[1].end", "must be more than fault[1].start, 0.2")
-        );
-        assert_eq!(second.help.as_deref(), Some("mend the fault. Or raise fault[1].end"));
-        assert_eq!(error().in_entry("fault", 0, 1), error());
     }
 }

@@ -42,11 +42,11 @@ pub type ByAdapted = Result<Judged, String>;
 impl Adapter<'_> {
     /// Adapts a set to the first halves of the healthy recordings by each channel, and judges by it their second halves and all others.
     pub fn judge(&self, recordings: &[Recorded]) -> Vec<ByAdapted> {
-        let mut sets: BTreeMap<&str, Result<Adaptation, String>> = BTreeMap::new();
-        let judge = |recording| {
+        let mut sets: BTreeMap<String, Result<Adaptation, String>> = BTreeMap::new();
+        let judge = |recording: &Recorded| {
             let Recorded { channel, label, .. } = recording;
             let adapt = || self.adapt(channel, recordings).map_err(|failure| failure.message);
-            let set = sets.entry(channel).or_insert_with(adapt).as_ref().map_err(String::clone)?;
+            let set = sets.entry(channel.clone()).or_insert_with(adapt).as_ref().map_err(String::clone)?;
             let part = if label.is == HEALTHY { Part::SecondHalf } else { Part::Whole };
             let judged = self.read(recording, part).and_then(|of_part| Ok(set.judge(&of_part)?));
             judged.map_err(|failure| reason(&failure, recording))
@@ -119,9 +119,8 @@ mod tests {
     #[test]
     fn a_threshold_tells_healthy_from_damaged() {
         let judged = |damaged: f64, p_value: f64| {
-            let judged =
-                Judged { probabilities: vec![vec![1.0 - damaged, damaged]], p_values: vec![p_value] };
-            Ok(ByAdapted { judged, threshold: 0.6 })
+            let probabilities = vec![vec![1.0 - damaged, damaged]];
+            Ok(Judged { probabilities, p_values: vec![p_value], threshold: 0.6 })
         };
         let all = [
             (true, judged(0.6, 0.5)),

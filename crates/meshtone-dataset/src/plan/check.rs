@@ -113,7 +113,7 @@ pub(super) fn first_records(plan: &Plan) -> ReadResult<()> {
             // A key of the plan is where it is mended; one of a record's scenario may be drawn, or written in another file.
             let of_class = |error: ScenarioError| {
                 let problem = error.to_string();
-                with_help_of(TomlError::new(format!("class[{}]", record.class), "", problem), error.into())
+                with_help_of(TomlError::new(format!("class[{}]", record.class), "", problem), error)
             };
             let made = sampler.scenario(&record).and_then(|scenario| {
                 refuse_ignored(&scenario, &record.values)?;
@@ -178,7 +178,7 @@ impl Plan {
         let Ok(sampler) = Sampler::new(&self.content) else { return Vec::new() };
         let cannot = |index: u64| {
             let record = sampler.record(index).ok()?;
-            let scenario = sampler.scenario(&record).map_err(TomlError::from);
+            let scenario = sampler.scenario(&record);
             let refused = scenario.and_then(|scenario| refuse_length(&self.content, &scenario)).err()?;
             Some(FailedRecord { record: index, reason: refused.to_string() })
         };
@@ -299,7 +299,7 @@ fn every_choice(content: &Content, sampler: &Sampler, tried: &[Tried]) -> ReadRe
                     let (label, keys, listed) = (&class.label, rule.keys.join(", "), joined(row, ", "));
                     let problem =
                         format!("no record of the class \"{label}\" can have {keys} = {listed}: {error}");
-                    with_help_of(TomlError::new(format!("{place}.{key}"), listed, problem), error.into())
+                    with_help_of(TomlError::new(format!("{place}.{key}"), listed, problem), error)
                 })?;
             }
         }

@@ -94,7 +94,7 @@ impl Reading<'_> {
             // Before anything is simulated.
             if let Err(error) = stages(&scenario) {
                 let key = format!("{}.{}", value.path(), error.key);
-                return Err(TomlError::from(error).with_key(key).at_line(Some(value.line())));
+                return Err(error.with_key(key).at_line(Some(value.line())));
             }
             cases.push(case);
             files.push(of_case);

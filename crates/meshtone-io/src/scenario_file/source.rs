@@ -55,7 +55,7 @@ impl ScenarioFile {
         let read = Scenario::from_toml_within(&text, &files, memory::limit());
         match read.and_then(|scenario| check(&scenario).map(|()| scenario)) {
             Ok(scenario) => Ok(Self { path, text, scenario, named_files: files.named.into_inner() }),
-            Err(error) => Err(ReadScenarioError::invalid(FileKind::Scenario, path, text, error.into())),
+            Err(error) => Err(ReadScenarioError::invalid(FileKind::Scenario, path, text, error)),
         }
     }
 
@@ -79,7 +79,7 @@ impl ScenarioFile {
     pub fn refuse(&self, error: ScenarioError) -> ReadScenarioError {
         let error = match TomlDocument::parse(&self.text) {
             Ok(document) => document.locate(error),
-            Err(_) => error.into(),
+            Err(_) => error,
         };
         let (path, text) = (self.path.clone(), self.text.clone());
         ReadScenarioError::Invalid { path, text, error: Box::new(error) }

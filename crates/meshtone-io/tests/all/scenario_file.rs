@@ -44,7 +44,7 @@ fn assert_refused(
     for word in words {
         assert!(message.contains(word), "`{word}` is not in: {message}");
     }
-    (*error).into()
+    *error
 }
 
 fn errors(teeth: usize) -> Array2<f64> {

@@ -26,7 +26,7 @@ use machine::{Forcing, Machine};
 use mesh::{ErrorForce, PairCurve, PublishedMesh};
 
 use crate::damage::DamagedTooth;
-use crate::error::ScenarioError;
+use crate::error::{self, ScenarioError};
 use crate::machine::DecayingMode;
 use crate::mesh::MeshCurve;
 use crate::mesh::curve::in_cycle;
@@ -67,7 +67,7 @@ impl Published {
         let fault = damage.map(|damage| damage::geometry(&damage, teeth, scenario.seed)).transpose()?;
         let gears = scenario.gears();
         let mesh = PublishedMesh::new(&gears, teeth, fault, cycle::grid(scenario, &gears))?;
-        let parts = scenario.expect_pair()?.rig_parts(&gears).ok_or_else(ScenarioError::nothing_left)?;
+        let parts = scenario.expect_pair()?.rig_parts(&gears).ok_or_else(error::nothing_left)?;
         let machine = Machine::new(parts, teeth, &mesh.load);
         let (scenario, profile_errors) = (scenario.clone(), profile_errors.cloned());
         Ok(Self { mesh, machine, scenario, time: *time, profile_errors })

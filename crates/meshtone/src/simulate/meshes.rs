@@ -4,7 +4,7 @@ use std::num::NonZeroUsize;
 
 use super::{AssembledMachine, MeshedPair};
 use crate::damage::DamagedTooth;
-use crate::error::ScenarioError;
+use crate::error::{self, ScenarioError};
 use crate::machine::Machine;
 use crate::mesh::{
     Contact, FaceForm, FacesAtRest, Friction, LoadAlongFace, Mesh, MeshParameters, PairSequence, PairTable,
@@ -131,7 +131,7 @@ fn points_of(time: &TimeGrid, turns_evenly: bool, turning: &Turning, pair: &Mesh
 /// The mesh, unless it can carry nothing, or has more pairs at once than a step looks at.
 fn checked(mesh: Mesh, gears: &NamedGears) -> Result<Mesh, ScenarioError> {
     if mesh.mean_stiffness_n_per_m.is_nan() || mesh.mean_stiffness_n_per_m <= 0.0 {
-        return Err(ScenarioError::not_stiff(gears.foundation()));
+        return Err(error::not_stiff(gears.foundation()));
     }
     if mesh.contact_ratio <= 0.0 {
         let problem = "the tips' chamfers and the active profile's shortening leave no path of contact";
@@ -141,10 +141,10 @@ fn checked(mesh: Mesh, gears: &NamedGears) -> Result<Mesh, ScenarioError> {
     }
     if mesh.face.overlap() == 0.0 && mesh.contact_ratio > Mesh::MOST_CONTACT_RATIO {
         let keys = [gears.whole(), gears.key("pressure_angle_deg")];
-        return Err(ScenarioError::too_many_pairs(mesh.contact_ratio, Mesh::MOST_CONTACT_RATIO, keys));
+        return Err(error::too_many_pairs(mesh.contact_ratio, Mesh::MOST_CONTACT_RATIO, keys));
     }
     let meets = |table: &PairTable| table.kind.pairs_per_cycle > 0 && table.can_touch();
-    if mesh.classes.iter().any(meets) { Ok(mesh) } else { Err(ScenarioError::nothing_left()) }
+    if mesh.classes.iter().any(meets) { Ok(mesh) } else { Err(error::nothing_left()) }
 }
 
 /// What a mesh is made of.
@@ -176,7 +176,7 @@ impl MeshOf<'_> {
         let &MeshedPair { ref teeth, ref damaged, static_force_n, .. } = self.pair;
         let sequence = PairSequence::new(gears.pinion_teeth, gears.gear_teeth, damaged)?;
         if closer_um != 0.0 && static_force_n <= 0.0 {
-            return Err(ScenarioError::no_load_along_the_face(gears.load()));
+            return Err(error::no_load_along_the_face(gears.load()));
         }
         let width_m = gears.face_width_mm * 1e-3;
         // While the whole face bears, wheels whose tilt is no unknown yield to a part of what closes their flanks.

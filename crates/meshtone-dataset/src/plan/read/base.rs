@@ -18,7 +18,6 @@ pub(super) fn read(root: &TomlTable<'_>, reading: &mut Reading) -> ReadResult<Sc
         let files = FilesBeside::new(reading.directory);
         let scenario = value.table()?.read(|table| Scenario::from_table(table, &files))?;
         scenario.validate().map_err(|error| {
-            let error = TomlError::from(error);
             let key = format!("{KEY}.{}", error.key);
             error.with_key(key)
         })?;

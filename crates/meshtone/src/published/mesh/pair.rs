@@ -1,6 +1,6 @@
 //! Stiffness of one tooth pair while it passes through contact.
 
-use crate::error::ScenarioError;
+use crate::error::{self, ScenarioError};
 use crate::interpolation::{NotAKnotSpline, UniformLinear};
 use crate::published::compliance::ToothCompliance;
 use crate::published::damage::{FaultGeometry, ToothSection};
@@ -33,7 +33,7 @@ impl PairStiffness {
         let sound_pinion = ToothSection::sound(&teeth.pinion, &teeth.pinion_profile);
         let healthy_n_per_mm = pair_stiffness(gears, teeth, &sound_pinion, &sound_gear);
         if healthy_n_per_mm.contains(&0.0) {
-            return Err(ScenarioError::not_stiff(NamedGears::of_pair(gears).foundation()));
+            return Err(error::not_stiff(NamedGears::of_pair(gears).foundation()));
         }
         Ok(Self {
             healthy_n_per_mm,

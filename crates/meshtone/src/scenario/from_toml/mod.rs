@@ -134,5 +134,5 @@ pub(super) fn located(document: &TomlDocument<'_>, mut error: ScenarioError) -> 
         error.problem = format!("{entry}: {}", error.problem);
         error.key = format!("{section}.errors_file");
     }
-    document.locate(error).into()
+    document.locate(error)
 }
