@@ -48,7 +48,7 @@ class Adaptation:
     classes : list of str
         The classes, the healthy one first.
     threshold : float
-        (-) Probability of damage above which a recording is called damaged: at most one in twenty windows of the healthy recordings, and of
+        (-) Probability of damage above which a window is called damaged: at most one in twenty windows of the healthy recordings, and of
         healthy simulations, is above it.
     healthy : array, shape (windows,)
         (-) Probability of damage of each window of the healthy recordings at the set's speeds, beside the others.
@@ -87,17 +87,18 @@ class Adaptation:
         Returns
         -------
         array, shape (windows, classes)
-            (-) In the order of :attr:`classes`; the recording is called damaged where 1 less the first exceeds :attr:`threshold`.
+            (-) In the order of :attr:`classes`; a window is called damaged where 1 less the first exceeds :attr:`threshold`.
 
         Raises
         ------
         ValueError
-            A recording that is too short, or of a lower sampling rate than the set.
+            A recording that is too short, or of a lower sampling rate than the set; a speed beside those of the set.
 
         Warns
         -----
         MeshtoneWarning
-            Most windows differ from the healthy recordings as no simulation does: a wrong unit or rate, another mounting, noise.
+            Most windows differ from the healthy recordings more than in any simulation: a wrong unit or rate, another mounting, noise. Not
+            where no healthy recording has a window.
         """
         probabilities, doubt = self._native.probabilities(_healthy(recording))
         warn([doubt] if doubt else [])

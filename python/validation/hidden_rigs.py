@@ -1,6 +1,6 @@
 """Damage of eight hidden rigs, and of eight hidden gearboxes, found by data sets that were adapted to them from healthy recordings.
 
-    python python/validation/hidden_rigs.py [pair | gearbox] [NUMBER …]     # numbers from 0 to 7; some minutes each on two cores
+    python python/validation/hidden_rigs.py pair|gearbox [NUMBER …]     # numbers from 0 to 7; some minutes each on two cores
 
 The user knows teeth, module, face, speed, load and grade; of the gearbox its shafts and bearings, too. Structure, path, grade, mounting and coloured
 noise of each machine are drawn, by half beyond the ranges of `unknown-rig`. Its recordings are a run-up and 16 s at one speed, healthy. Asked are
@@ -140,7 +140,10 @@ class HiddenGearbox(HiddenPair):
         shafts=[{"name": "input", "length_mm": 160, "radius_mm": 12.5, "couples_to": "motor"}, {"name": "output", "length_mm": 160, "radius_mm": 17.5, "couples_to": "brake"}],
         wheels=[{"name": "z1", "shaft": "input", "at": 0.5, "teeth": 23, "face_width_mm": 20, "iso_class": 5}, {"name": "z2", "shaft": "output", "at": 0.5, "teeth": 57, "face_width_mm": 20, "iso_class": 5}],
         meshes=[{"wheels": ["z1", "z2"], "module_mm": 2.5}],
-        bearings=[{"shaft": shaft, "at": at, **kind} for shaft, kind in (("input", {"kind": "ball", "name": "6205"}), ("output", {})) for at in (0.0, 1.0)],
+        bearings=[
+            {"shaft": "input", "at": 0.0, "kind": "ball", "name": "6205"}, {"shaft": "input", "at": 1.0, "kind": "ball", "name": "6205"},
+            {"shaft": "output", "at": 0.0}, {"shaft": "output", "at": 1.0},
+        ],
         housing={"mass_kg": 25},
         operation={"input_speed_hz": 30, "brake_torque_nm": 80},
         sensors=[{"name": "seat", "at": "input:0"}],
@@ -236,8 +239,10 @@ def main() -> None:
     """Print a line for each rig and way to learn."""
     warnings.simplefilter("ignore", mt.MeshtoneWarning)
     print("rig, learnt from: area under the curve, balanced accuracy of detection, false alarms, mean recall of the classes")
-    of_kind = HiddenGearbox if "gearbox" in sys.argv else HiddenPair
-    for number in [int(text) for text in sys.argv[1:] if text.isdigit()] or range(8):
+    kinds = {"pair": HiddenPair, "gearbox": HiddenGearbox}
+    kind, *numbers = sys.argv[1:]
+    of_kind = kinds[kind]
+    for number in [int(text) for text in numbers] or range(8):
         rig, folder = of_kind(number), Path(tempfile.mkdtemp())
         run_up, steady = rig.healthy(8, [15, 45], rig.snr_db), rig.healthy(16, [30, 30], rig.snr_db)
         noisy = [rig.healthy(8, [15, 45], 10), rig.healthy(16, [30, 30], 10)]

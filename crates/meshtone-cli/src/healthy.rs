@@ -155,8 +155,8 @@ impl HealthyRecordings {
         let Turned { train, turning, warnings, .. } = turned;
         let refused = |error| refuse(&source, &what, RefusedInput::Phase, &error);
         let bearings: Vec<TrainBearing> = train.bearings.iter().map(|(_, bearing)| *bearing).collect();
-        let SensorRecording { values_g, sampling_rate_hz, shaft, phase, stated } = &recording;
-        let (signal, sampling_rate_hz) = (&values_g[..], *sampling_rate_hz);
+        let SensorRecording { values_g: signal, sampling_rate_hz, shaft, phase, stated } = &recording;
+        let sampling_rate_hz = *sampling_rate_hz;
         let heard = TrainRecording { signal, sampling_rate_hz, train: &train, turning: &turning };
         let heard = heard.bearing_defects(&bearings).map_err(refused)?;
         // The path of a damaged machine would take its bursts for the path's.

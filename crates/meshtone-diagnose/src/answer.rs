@@ -80,7 +80,7 @@ pub struct KindAnswer {
 
 impl KindAnswer {
     /// (-) Draws of its severity without weights, for a histogram.
-    pub fn severity_draws(&self) -> Vec<f64> {
+    pub fn severity_histogram(&self) -> Vec<f64> {
         const COUNT: usize = 400;
         let parts: [f64; COUNT] = std::array::from_fn(|at| (at as f64 + 0.5) / COUNT as f64);
         quantiles(self.severity_draws.clone(), parts).to_vec()

@@ -107,6 +107,9 @@ impl Prior {
     }
 
     /// Does what [`Self::draw`] does, where the kinds are known already: finding them takes a check of a scenario of each.
+    ///
+    /// Numbers of the rig are drawn once for a unit, the damage and the noise for each record, each from draws of its own purpose, so that a record can be made
+    /// again alone.
     pub(crate) fn draw_among(&self, kinds: &[DamageKind], number: u64) -> Result<Drawn, ScenarioError> {
         let mut common = Draws::new(self.seed, Purpose::DiagnosisUnit, number / RECORDS_PER_UNIT);
         let mut own = Draws::new(self.seed, Purpose::DiagnosisRecord, number);

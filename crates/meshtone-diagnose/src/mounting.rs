@@ -23,6 +23,8 @@ pub(crate) struct CommonChanges {
 }
 
 impl CommonChanges {
+    /// Learns how much usually changes alike.
+    ///
     /// # Arguments
     /// * `simulations` - what changed alike in each
     pub fn new(simulations: &[&Alike]) -> Self {

@@ -70,6 +70,9 @@ fn listed<const N: usize>(found: [(&'static str, Vec<String>); N]) -> Vec<Diagno
 
 /// Warnings about an answer.
 ///
+/// Each has its code and, where it applies, its sentence; the table puts them in the order in which a reader needs them. What follows from another warning is
+/// not said again.
+///
 /// # Arguments
 /// * `answer` - all but its warnings
 /// * `learned`, `question` - what it was made of

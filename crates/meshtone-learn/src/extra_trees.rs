@@ -7,8 +7,8 @@ use crate::LearnError;
 
 /// Trees that vote.
 const TREES: u64 = 200;
-/// (-) Part of the features of which one is drawn for each split: most tell nothing of most damage, and a few would rarely be drawn (the source,
-/// section 3.2).
+/// (-) Splits that are drawn at each node, of which the best counts, over the number of features. Most features tell nothing of most damage, so that with few
+/// draws those that do would rarely be among them (the source, section 3.2); a feature may be drawn twice.
 const TRIED: f64 = 0.3;
 /// Fewest rows of a leaf.
 const LEAST_LEAF: usize = 2;
@@ -116,7 +116,7 @@ impl Growing<'_> {
         let width = self.rows[0].len();
         let (mut best, mut best_gain) = (None, f64::NEG_INFINITY);
         for _ in 0..(TRIED * width as f64).ceil() as usize {
-            let feature = (self.draws.bits() % width.max(1) as u64) as usize;
+            let feature = (self.draws.bits() % width as u64) as usize;
             let part = self.draws.uniform(0.5, 0.5);
             let values = examples.iter().map(|&row| self.rows[row][feature]);
             let (least, most) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), value| {

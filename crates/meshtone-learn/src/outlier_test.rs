@@ -50,6 +50,8 @@ pub struct Ranking {
 }
 
 impl Ranking {
+    /// Ranks the values of simulations.
+    ///
     /// # Arguments
     /// * `values` - of simulations
     pub fn new(values: impl IntoIterator<Item = f64>) -> Self {
@@ -70,6 +72,9 @@ impl Ranking {
 
 impl OutlierTest {
     /// The test against some simulations.
+    ///
+    /// Each simulation is first asked itself, against those of other units, because only the ranks among these answers make a p-value of a distance. The ranges
+    /// of single features are likewise of the half of the units in which the asked one is not.
     ///
     /// # Arguments
     /// * `rows` - features of the simulations

@@ -31,7 +31,7 @@ pub fn mean(values: &[f64]) -> f64 {
 /// The middle one of some values, of an even number the mean of the middle two.
 ///
 /// # Arguments
-/// * `values` - in any order; not empty
+/// * `values` - in any order; of none NaN
 pub fn median(values: &[f64]) -> f64 {
     quantiles(values.iter().map(|value| (*value, 1.0)).collect(), [0.5])[0]
 }

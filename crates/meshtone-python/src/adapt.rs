@@ -20,8 +20,6 @@ use crate::sensor_path::{Recorded, path_error, sensor_recordings};
 #[pyclass(frozen)]
 pub struct Adaptation {
     adaptation: adapt::Adaptation,
-    machine: meshtone::scenario::Scenario,
-    train: GearTrain,
 }
 
 /// Makes a data set for a machine, in a directory.
@@ -50,7 +48,7 @@ pub fn adapt_dataset<'py>(
             adapt::adapt(&known, &settings, &to, &GenerateControl { progress, cancelled });
         made.map_err(dataset_error)
     })?;
-    Ok(Adaptation { adaptation: made?, machine, train })
+    Ok(Adaptation { adaptation: made? })
 }
 
 #[pymethods]
@@ -66,7 +64,8 @@ impl Adaptation {
         py: Python<'py>,
         recording: Recorded<'py>,
     ) -> PyResult<(Vec<Vec<f64>>, Option<String>)> {
-        let recording = &sensor_recordings(&self.machine, &self.train, &[recording])?[0];
+        let adapt::Adaptation { scenario, train, .. } = &self.adaptation;
+        let recording = &sensor_recordings(scenario, train, &[recording])?[0];
         let judged = py.detach(|| self.adaptation.judge(recording)).map_err(dataset_error)?;
         let doubt = judged.doubt();
         Ok((judged.probabilities, doubt))

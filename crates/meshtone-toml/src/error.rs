@@ -31,6 +31,7 @@ pub enum ErrorKind {
 /// # Ok::<(), meshtone_toml::TomlError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct TomlError {
     /// Kind of the mistake.
     pub kind: ErrorKind,

@@ -29,29 +29,6 @@ pub(crate) fn not_stiff((key, help): (String, &str)) -> ScenarioError {
     ScenarioError::new(key, "", problem).with_help(help)
 }
 
-/// More pairs in contact at once than the model of contact looks at.
-///
-/// # Arguments
-/// * `contact_ratio`, `most` - (-) the contact ratio, and the largest
-/// * `whole`, `angle` - keys of the pair and of its pressure angle
-pub(crate) fn too_many_pairs(contact_ratio: f64, most: f64, [whole, angle]: [String; 2]) -> ScenarioError {
-    let problem = format!(
-        "has a contact ratio of {contact_ratio:.2} between the chamfers; must be at most {most:.1} under the model of contact"
-    );
-    ScenarioError::new(whole, "", problem)
-        .with_help(format!("raise {angle}; of one pair, model = \"linear\" has no such limit"))
-}
-
-/// Flanks that close along the face, and no load that could decide how much of it bears.
-///
-/// # Arguments
-/// * `key`, `uneven` - of [`NamedGears::load`](crate::wheel::NamedGears::load)
-pub(crate) fn no_load_along_the_face((key, uneven): (String, String)) -> ScenarioError {
-    let problem = "the mesh is unloaded, but its flanks are misaligned along the face; must be loaded, because the load determines how much of the face is in contact";
-    ScenarioError::new(key, "", problem)
-        .with_help(format!("load the mesh by operation.brake_torque_nm, or set {uneven} to 0"))
-}
-
 /// Damage that leaves no tooth that could carry a load.
 pub(crate) fn nothing_left() -> ScenarioError {
     let problem = "the faults leave no pair of teeth that could touch; at least one must be left";

@@ -5,13 +5,13 @@ use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 
 use meshtone::scenario::Scenario;
-use meshtone::tuning::SensorRecording;
+use meshtone::tuning::{PathError, SensorRecording};
 use meshtone_dataset::adapt::{AdaptSettings, Adaptation, Judged, KnownMachine, adapt};
 use meshtone_dataset::generate::GenerateControl;
 use meshtone_dataset::store::Destination;
 use serde_json::{Value, json};
 
-use super::preset::{HEALTHY, Recorded};
+use super::preset::{HEALTHY, Recorded, file_name};
 use super::score::{Part, read, reason};
 use crate::diagnose::observe::to_g;
 use crate::failure::Failure;
@@ -19,6 +19,7 @@ use crate::healthy::{estimated, over_shaft};
 use crate::indicators::options::{PhaseOptions, ShaftOptions};
 use crate::indicators::train::Turned;
 use crate::progress::with_bar;
+use crate::terminal::warn;
 
 /// Units of a set.
 const UNITS: u64 = 64;
@@ -43,23 +44,41 @@ impl Adapter<'_> {
     /// Adapts a set to the first halves of the healthy recordings by each channel, and judges by it their second halves and all others.
     pub fn judge(&self, recordings: &[Recorded]) -> Vec<ByAdapted> {
         let mut sets: BTreeMap<String, Result<Adaptation, String>> = BTreeMap::new();
-        let judge = |recording: &Recorded| {
+        let of_each = |recording: &Recorded| {
             let Recorded { channel, label, .. } = recording;
-            let adapt = || self.adapt(channel, recordings).map_err(|failure| failure.message);
-            let set = sets.entry(channel.clone()).or_insert_with(adapt).as_ref().map_err(String::clone)?;
+            let made = sets.entry(channel.clone()).or_insert_with(|| {
+                self.adapt(channel, recordings).map_err(|Failure { message, help, .. }| match help {
+                    Some(help) => format!("{message}; {help}"),
+                    None => message,
+                })
+            });
+            let set = made.as_ref().map_err(String::clone)?;
             let part = if label.is == HEALTHY { Part::SecondHalf } else { Part::Whole };
             let judged = self.read(recording, part).and_then(|of_part| Ok(set.judge(&of_part)?));
             judged.map_err(|failure| reason(&failure, recording))
         };
-        recordings.iter().map(judge).collect()
+        recordings.iter().map(of_each).collect()
     }
 
+    /// Adapts the set of a channel. A healthy recording that cannot be read is left out, with a warning.
     fn adapt(&self, channel: &str, recordings: &[Recorded]) -> Result<Adaptation, Failure> {
-        let healthy = recordings.iter().filter(|of| of.label.is == HEALTHY && of.channel == channel);
-        let healthy = healthy.filter_map(|recording| self.read(recording, Part::FirstHalf).ok());
-        let healthy: Vec<SensorRecording> = healthy.collect();
+        let (mut healthy, mut names) = (Vec::new(), Vec::new());
+        for of in recordings.iter().filter(|of| of.label.is == HEALTHY && of.channel == channel) {
+            let name = file_name(&of.path);
+            match self.read(of, Part::FirstHalf) {
+                Ok(half) => (healthy.push(half), names.push(name)).0,
+                Err(failure) => {
+                    warn(format_args!("{name}, {channel}: not adapted to: {}", reason(&failure, of)));
+                }
+            }
+        }
         let estimate = estimated(self.scenario, &healthy, DRAWS, SEED, self.quiet);
-        let estimate = estimate.map_err(|error| Failure::failed(error.to_string()))?;
+        let estimate = estimate.map_err(|error| match error {
+            PathError::Recording { index, problem } => {
+                Failure::failed(format!("{}: {problem}", names[index]))
+            }
+            error => Failure::failed(error.to_string()),
+        })?;
         let known = KnownMachine { scenario: self.scenario, recordings: &healthy, estimate: &estimate };
         let settings = AdaptSettings { classes: self.classes.to_vec(), units: UNITS, seed: SEED };
         let to = Destination::directory(self.folder.join(channel));
@@ -91,12 +110,10 @@ pub fn in_numbers(answer: &ByAdapted) -> Value {
 /// # Arguments
 /// * `answers` - whether each is healthy, and what is said about it
 pub fn counted<'a>(answers: impl Iterator<Item = (bool, &'a ByAdapted)>) -> (String, Value) {
-    let (mut right, mut answered, mut unlike, mut refused) = ([0; 2], [0; 2], 0, 0);
+    let (mut right, mut answered, mut unlike, mut refused) = ([0; 2], [0; 2], 0, Vec::new());
     for (is_healthy, answer) in answers {
-        let Ok(judged) = answer else {
-            refused += 1;
-            continue;
-        };
+        let judged = answer.as_ref().inspect_err(|reason| refused.push(reason.as_str()));
+        let Ok(judged) = judged else { continue };
         let is_damaged = judged.damaged() > judged.threshold;
         answered[usize::from(!is_healthy)] += 1;
         right[usize::from(!is_healthy)] += usize::from(is_damaged != is_healthy);
@@ -106,9 +123,11 @@ pub fn counted<'a>(answers: impl Iterator<Item = (bool, &'a ByAdapted)>) -> (Str
     let number = |of: usize| json!({ "right": right[of], "of": answered[of] });
     (
         format!(
-            "adapted sets: {healthy} healthy, {damaged} damaged told rightly; {unlike} unlike all simulations; {refused} refused"
+            "adapted sets: {healthy} healthy, {damaged} damaged told rightly; {unlike} unlike all simulations; {} refused{}",
+            refused.len(),
+            refused.first().map(|reason| format!(", the first: {reason}")).unwrap_or_default()
         ),
-        json!({ "healthy": number(0), "damaged": number(1), "unlike": unlike, "refused": refused }),
+        json!({ "healthy": number(0), "damaged": number(1), "unlike": unlike, "refused": refused.len() }),
     )
 }
 

@@ -1,6 +1,9 @@
 //! Scores of bearings: the verdict of `meshtone indicators` against what is published, and beside it a simple rule.
 
+use std::collections::BTreeSet;
+
 use meshtone::signal::{DefectKind, EnvelopeBand, FrequencyBand};
+use meshtone_learn::mean;
 use serde_json::{Map, Value, json};
 
 use super::preset::{HEALTHY, Recorded};
@@ -82,45 +85,29 @@ fn outcome(is: &str, named: Option<&str>) -> &'static str {
 /// # Arguments
 /// * `told` - states, and what is made of them
 fn sums(told: &[(&str, Outcomes)]) -> (String, Value) {
-    let mut states: Vec<&str> = Vec::new();
-    told.iter().for_each(|(is, _)| {
-        if !states.contains(is) {
-            states.push(is)
-        }
-    });
+    let states: BTreeSet<&str> = told.iter().map(|(is, _)| *is).collect();
     let heads = ["", "balanced accuracy"].into_iter().chain(OUTCOMES).chain(states.iter().copied());
     let mut rows = vec![(heads.map(str::to_owned).collect::<Vec<_>>(), String::new())];
     let mut all = Map::new();
     for (place, name) in ["verdict", "rule"].into_iter().enumerate() {
         let count =
             |fits: &dyn Fn(&str, &str) -> bool| told.iter().filter(|(is, of)| fits(is, of[place])).count();
-        let of_outcomes = OUTCOMES.map(|wanted| count(&|_, outcome| outcome == wanted));
-        let of_states: Vec<[usize; 2]> = states
-            .iter()
-            .map(|state| {
-                [count(&|is, outcome| is == *state && outcome == "right"), count(&|is, _| is == *state)]
-            })
-            .collect();
-        let parts: f64 = of_states.iter().map(|[right, of]| *right as f64 / *of as f64).sum();
-        let accuracy = (!states.is_empty()).then(|| parts / states.len() as f64);
-        let cells =
-            [name.to_owned(), accuracy.map_or_else(String::new, |part| format!("{part:.2}"))].into_iter();
-        let cells = cells.chain(of_outcomes.map(|count| count.to_string()));
-        rows.push((
-            cells.chain(of_states.iter().map(|[right, of]| format!("{right} of {of}"))).collect(),
-            String::new(),
-        ));
-        let mut numbers: Map<String, Value> = OUTCOMES
-            .iter()
-            .zip(of_outcomes)
-            .map(|(name, count)| (name.replace(' ', "_"), json!(count)))
-            .collect();
+        let of_outcomes = OUTCOMES.map(|wanted| (wanted, count(&|_, outcome| outcome == wanted)));
+        let of_states = states.iter().map(|state| {
+            (*state, count(&|is, outcome| is == *state && outcome == "right"), count(&|is, _| is == *state))
+        });
+        let of_states: Vec<(&str, usize, usize)> = of_states.collect();
+        let parts: Vec<f64> = of_states.iter().map(|(_, right, of)| *right as f64 / *of as f64).collect();
+        let accuracy = (!parts.is_empty()).then(|| mean(&parts));
+        let mut cells = vec![name.to_owned(), accuracy.map_or_else(String::new, |part| format!("{part:.2}"))];
+        cells.extend(of_outcomes.iter().map(|(_, count)| count.to_string()));
+        cells.extend(of_states.iter().map(|(_, right, of)| format!("{right} of {of}")));
+        rows.push((cells, String::new()));
+        let outcomes = of_outcomes.iter().map(|(name, count)| (name.replace(' ', "_"), json!(count)));
+        let mut numbers: Map<String, Value> = outcomes.collect();
         numbers.insert("balanced_accuracy".to_owned(), json!(accuracy));
-        let states = states
-            .iter()
-            .zip(of_states)
-            .map(|(state, [right, of])| ((*state).to_owned(), json!({ "right": right, "of": of })));
-        numbers.insert("states".to_owned(), Value::Object(states.collect()));
+        let states = of_states.iter().map(|(state, right, of)| (*state, json!({ "right": right, "of": of })));
+        numbers.insert("states".to_owned(), states.collect());
         all.insert(name.to_owned(), Value::Object(numbers));
     }
     (columns(&rows), Value::Object(all))

@@ -21,7 +21,7 @@ pub struct Diagnoser<'s> {
 }
 
 /// What is said about a recording, or why nothing is.
-pub struct Diagnosed(Result<Answer, String>);
+pub type Diagnosed = Result<Answer, String>;
 
 impl<'s> Diagnoser<'s> {
     /// Takes or makes the simulations.
@@ -43,7 +43,7 @@ impl<'s> Diagnoser<'s> {
     /// * `healthy` - the healthy one, where there is one
     pub fn diagnose(&self, recording: &Recorded, healthy: Option<&Recorded>) -> Diagnosed {
         let Some(healthy) = healthy else {
-            return Diagnosed(Err("there is no healthy recording of its load".to_owned()));
+            return Err("there is no healthy recording of its load".to_owned());
         };
         let asked = || {
             let parts = match recording.label.is == HEALTHY {
@@ -56,7 +56,7 @@ impl<'s> Diagnoser<'s> {
             question.check(&self.prior)?;
             answer(&self.reference, &question, self.quiet)
         };
-        Diagnosed(asked().map_err(|failure: Failure| reason(&failure, recording)))
+        asked().map_err(|failure: Failure| reason(&failure, recording))
     }
 
     fn observe(&self, input: Input) -> Result<Observation, Failure> {
@@ -67,25 +67,22 @@ impl<'s> Diagnoser<'s> {
     }
 }
 
-impl Diagnosed {
-    /// In a few words, and in numbers.
-    pub fn shown(&self) -> (String, Value) {
-        match &self.0 {
-            Err(reason) => (format!("refused: {reason}"), json!({ "refused": reason })),
-            Ok(answer) => {
-                let p = p_in_words(answer.outside_model);
-                let words = match (answer.is_remounted(), answer.is_outside()) {
-                    (true, _) => "mounted anew since the healthy one".to_owned(),
-                    (false, true) => format!("unlike all simulations ({p})"),
-                    (false, false) => {
-                        let likeliest = answer.kinds.first().map_or("", |kind| kind.label);
-                        format!("damaged {:.0} %, likeliest {likeliest} ({p})", 100.0 * answer.damaged())
-                    }
-                };
-                (words, answer.to_json())
-            }
-        }
-    }
+/// What is said about a recording, in a few words and in numbers.
+pub fn shown(diagnosed: &Diagnosed) -> (String, Value) {
+    let answer = match diagnosed {
+        Err(reason) => return (format!("refused: {reason}"), json!({ "refused": reason })),
+        Ok(answer) => answer,
+    };
+    let p = p_in_words(answer.outside_model);
+    let words = if answer.is_remounted() {
+        "mounted anew since the healthy one".to_owned()
+    } else if answer.is_outside() {
+        format!("unlike all simulations ({p})")
+    } else {
+        let likeliest = answer.kinds.first().map_or("", |kind| kind.label);
+        format!("damaged {:.0} %, likeliest {likeliest} ({p})", 100.0 * answer.damaged())
+    };
+    (words, answer.to_json())
 }
 
 /// How many recordings are inside, and what is said of these: in words and in numbers.
@@ -93,7 +90,7 @@ impl Diagnosed {
 /// # Arguments
 /// * `diagnosed` - whether each is healthy, and what is said about it
 pub fn counted(diagnosed: &[(bool, Diagnosed)]) -> (String, Value) {
-    let answers = || diagnosed.iter().filter_map(|(is_healthy, of)| Some((*is_healthy, of.0.as_ref().ok()?)));
+    let answers = || diagnosed.iter().filter_map(|(is_healthy, of)| Some((*is_healthy, of.as_ref().ok()?)));
     let inside = || answers().filter(|(_, answer)| !answer.is_outside());
     let right = inside().filter(|(is_healthy, answer)| (answer.damaged() < 0.5) == *is_healthy).count();
     let (all, answered, inside) = (diagnosed.len(), answers().count(), inside().count());

@@ -7,7 +7,7 @@ use meshtone_learn::{area_under_curve, median};
 use serde_json::{Map, Value, json};
 
 use super::adaptation::{self, Adapter};
-use super::diagnosis::{Diagnoser, counted};
+use super::diagnosis::{self, Diagnoser};
 use super::preset::{HEALTHY, Recorded};
 use super::score::{Scored, Scores, columns, each, processed};
 use crate::diagnose::reference::ReferenceOptions;
@@ -53,9 +53,11 @@ pub fn score(
     let each = found.into_iter().map(|found| found.map(scored)).collect();
     let mut scores = Scores { each, table, sums: json!({ "areas": areas }), heads };
     if adapter.is_some() {
-        let answers = recordings.iter().map(|recording| recording.label.is == HEALTHY).zip(&adapted);
-        let of_each = adapted.iter().map(adaptation::in_numbers);
-        scores.add("adapted", of_each, adaptation::counted(answers));
+        let answers = recordings.iter().zip(&adapted).zip(&scores.each);
+        let answers = answers.filter(|(_, scored)| scored.is_ok());
+        let answers = answers.map(|((recording, answer), _)| (recording.label.is == HEALTHY, answer));
+        let counted = adaptation::counted(answers);
+        scores.add("adapted", adapted.iter().map(adaptation::in_numbers), counted);
     }
     if let Some(kept) = kept.filter(|_| scores.each.iter().any(Result::is_ok)) {
         diagnose(&mut scores, recordings, &Diagnoser::new(scenario, kept, quiet)?);
@@ -71,12 +73,12 @@ fn diagnose(scores: &mut Scores, recordings: &[Recorded], diagnoser: &Diagnoser)
         if let Ok(scored) = scored {
             let healthy = beside(place, recordings, true).map(|other| &recordings[other]).next();
             let answer = diagnoser.diagnose(&recordings[place], healthy);
-            (scored.words, shown) = answer.shown();
+            (scored.words, shown) = diagnosis::shown(&answer);
             answers.push((recordings[place].label.is == HEALTHY, answer));
         }
         of_each.push(shown);
     }
-    scores.add("diagnosis", of_each, counted(&answers));
+    scores.add("diagnosis", of_each, diagnosis::counted(&answers));
     scores.heads.push("diagnosis".to_owned());
 }
 

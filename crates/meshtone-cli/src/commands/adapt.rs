@@ -79,7 +79,7 @@ fn table(adaptation: &Adaptation, estimate: &PathEstimate, to: &Destination) -> 
         format!("  {name:<40}  {mean:>5.2}  {least:>5.2}  {largest:>5.2}\n")
     };
     let head = format!(
-        "  {} of {} classes: {}\n  the path was compared from {from_hz:.0} to {to_hz:.0} Hz\n  called damaged from a probability of {threshold:.3} on, from {windows} of the healthy recordings and healthy simulations\n",
+        "  {} of {} classes: {}\n  the path was compared from {from_hz:.0} to {to_hz:.0} Hz\n  called damaged above a probability of {threshold:.3}, from {windows} of the healthy recordings and healthy simulations\n",
         counted(plan.records(), "record"),
         adaptation.classes().len(),
         adaptation.classes().join(", ")

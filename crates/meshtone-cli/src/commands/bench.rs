@@ -47,8 +47,8 @@ pub struct Bench {
     diagnose: bool,
     #[command(flatten)]
     kept: ReferenceOptions,
-    /// Judge the recordings of a gearbox by sets that are adapted to the healthy ones by each channel, to the first halves of these; some minutes
-    /// for each. The sets are kept in the folder adapted
+    /// Judge each recording of a gearbox by a data set of its channel, adapted to the first half of each healthy recording; this simulates for some
+    /// minutes a channel. The sets are kept in the folder `adapted` of the results
     #[arg(long)]
     adapt: bool,
     /// Directory to write to. [default: <name of the folder>_bench in the current directory]

@@ -31,7 +31,7 @@ pub fn draw(answer: &Answer, title: &str, rig: &[TrainWheel]) -> Figure {
     let shown = &rig[answer.shown_wheel];
     let on_shown =
         damage.and_then(|kind| kind.place).filter(|place| is_damaged && place.wheel == answer.shown_wheel);
-    let draws = damage.map_or_else(Vec::new, KindAnswer::severity_draws);
+    let draws = damage.map_or_else(Vec::new, KindAnswer::severity_histogram);
     let severity = damage.and_then(|kind| {
         let severity = kind.severity?;
         Some(SeverityView {

@@ -26,30 +26,36 @@ pub(super) struct Detector {
 impl Detector {
     /// Learns from the records of a data set.
     ///
+    /// The trees learn the classes of these records alone. Whether a record is like any simulation is asked of those of the other machines, too, since a real
+    /// machine differs from the scenario as they do.
+    ///
     /// # Arguments
     /// * `rows` - the records, with their labels
-    /// * `others` - records of machines that differ from it, which a record may be like, too
+    /// * `others` - records of machines that differ from it
     /// * `is_beside` - whether they are compared with healthy ones of their unit, or taken as they are
     ///
     /// # Errors
     /// A single class; records from which nothing can be learnt.
     pub fn learn(rows: &Rows, others: &Rows, is_beside: bool) -> Result<Self, DatasetError> {
+        let refused = |why: String| {
+            let problem = format!("nothing can be learnt from the records: {why}");
+            DatasetError::refused(problem, "simulate more units")
+        };
+        let values = features(rows, is_beside, &|row| rows.is_healthy(row));
+        // A record without another healthy one of its unit, as where simulations failed, has no differences.
+        let rows = rows.filter(|row| values[row].iter().any(|value| value.is_finite()));
+        let values = features(&rows, is_beside, &|row| rows.is_healthy(row));
         let mut labels: Vec<String> = rows.labels.iter().flatten().cloned().collect();
         labels.sort_unstable_by_key(|label| (label != HEALTHY, label.clone()));
         labels.dedup();
         let place = |label: &Option<String>| labels.iter().position(|known| Some(known) == label.as_ref());
         let classes: Vec<usize> = rows.labels.iter().filter_map(place).collect();
+        let damaged = labels.len() as f64 - 1.0;
         let weight = |class: usize| {
-            let count = classes.iter().filter(|of| **of == class).count() as f64;
-            let part = if class == 0 {
-                HEALTHY_WEIGHT
-            } else {
-                (1.0 - HEALTHY_WEIGHT) / (labels.len() as f64 - 1.0)
-            };
-            part / count
+            let part = if class == 0 { HEALTHY_WEIGHT } else { (1.0 - HEALTHY_WEIGHT) / damaged };
+            part / classes.iter().filter(|of| **of == class).count() as f64
         };
         let weights: Vec<f64> = (0..labels.len()).map(weight).collect();
-        let values = features(rows, is_beside, &|row| classes[row] == 0);
         let width = values.first().map_or(0, Vec::len);
         let column = |feature: usize| values.iter().map(|row| row[feature]).collect::<Vec<f64>>();
         let features = (0..width).filter_map(|feature| {
@@ -57,42 +63,40 @@ impl Detector {
             column.iter().all(|value| value.is_finite()).then(|| (feature, median(&column)))
         });
         let features: Vec<(usize, f64)> = features.collect();
+        if features.is_empty() {
+            return Err(refused("no indicator has a value in all of them".to_owned()));
+        }
         let values: Vec<Vec<f64>> = values.iter().map(|row| known(row, &features)).collect();
-        let trees = ExtraTrees::learn(&values, &classes, &weights, 1).map_err(|error| {
-            let problem = format!("nothing can be learnt from the records: {error}");
-            DatasetError::refused(problem, "simulate more units")
-        })?;
-        let outside = is_beside.then(|| {
+        let trees = ExtraTrees::learn(&values, &classes, &weights, 1);
+        let trees = trees.map_err(|error| refused(error.to_string()))?;
+        let mut detector = Self { labels, is_beside, features, trees, outside: None };
+        if is_beside {
             let all = rows.with(others);
-            let healthy = |row: usize| all.labels[row].as_deref() == Some(HEALTHY);
-            let known: Vec<Vec<f64>> =
-                all.beside_healthy(&healthy).iter().map(|row| known(row, &features)).collect();
+            let known = detector.features(&all, &|row| all.is_healthy(row));
             let expected = vec![true; known.len()];
-            OutlierTest::new(&known, all.units, expected)
-        });
-        Ok(Self { labels, is_beside, features, trees, outside })
+            detector.outside = Some(OutlierTest::new(&known, all.units, expected));
+        }
+        Ok(detector)
     }
 
-    /// (-) The probabilities of the classes for some records, each beside the healthy ones of its unit.
+    /// The features of some records, each beside the healthy ones of its unit.
     ///
     /// # Arguments
     /// * `rows` - the records
     /// * `healthy` - whether a record is known to be healthy
-    pub fn probabilities(&self, rows: &Rows, healthy: &dyn Fn(usize) -> bool) -> Vec<Vec<f64>> {
-        self.features(rows, healthy).iter().map(|row| self.trees.probabilities(row)).collect()
-    }
-
-    /// (-) The part of the simulations that are as strange as each record, or stranger; of none 1.
-    ///
-    /// # Arguments
-    /// * `rows`, `healthy` - as of [`Self::probabilities`]
-    pub fn p_values(&self, rows: &Rows, healthy: &dyn Fn(usize) -> bool) -> Vec<f64> {
-        let p_value = |row: &Vec<f64>| self.outside.as_ref().map_or(1.0, |test| test.p_value(row));
-        self.features(rows, healthy).iter().map(p_value).collect()
-    }
-
-    fn features(&self, rows: &Rows, healthy: &dyn Fn(usize) -> bool) -> Vec<Vec<f64>> {
+    pub fn features(&self, rows: &Rows, healthy: &dyn Fn(usize) -> bool) -> Vec<Vec<f64>> {
         features(rows, self.is_beside, healthy).iter().map(|row| known(row, &self.features)).collect()
+    }
+
+    /// (-) The probabilities of the classes for records with these features.
+    pub fn probabilities(&self, features: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        features.iter().map(|row| self.trees.probabilities(row)).collect()
+    }
+
+    /// (-) The part of the simulations that are as strange as records with these features, or stranger; 1 where records are taken as they are.
+    pub fn p_values(&self, features: &[Vec<f64>]) -> Vec<f64> {
+        let p_value = |row: &Vec<f64>| self.outside.as_ref().map_or(1.0, |test| test.p_value(row));
+        features.iter().map(p_value).collect()
     }
 }
 

@@ -23,7 +23,7 @@ use crate::manifest::ADAPTATION;
 use crate::plan::Plan;
 use crate::record::MachineRecording;
 use crate::store::Destination;
-use detector::{Detector, HEALTHY, threshold};
+use detector::{Detector, threshold};
 use plan::Machine;
 use rows::Rows;
 
@@ -73,7 +73,7 @@ pub struct Judged {
     pub probabilities: Vec<Vec<f64>>,
     /// (-) The part of the simulations that are as strange as each window, or stranger.
     pub p_values: Vec<f64>,
-    /// (-) Probability of damage from which on it is called damaged.
+    /// (-) Probability of damage above which a window is called damaged, and a recording by the mean over its windows.
     pub threshold: f64,
 }
 
@@ -83,7 +83,7 @@ pub struct Adaptation {
     pub plan: Plan,
     /// What was made of it.
     pub generated: Generated,
-    /// (-) Probability of damage from which on a recording is called damaged.
+    /// (-) Probability of damage above which a window is called damaged.
     pub threshold: f64,
     /// (-) Probability of damage of each window of the healthy recordings at the set's speeds.
     pub healthy: Vec<f64>,
@@ -92,8 +92,10 @@ pub struct Adaptation {
     /// What is doubtful about the healthy recordings, in words.
     pub doubts: Vec<String>,
     detector: Detector,
-    scenario: Scenario,
-    train: GearTrain,
+    /// The machine's scenario.
+    pub scenario: Scenario,
+    /// Its shafts and wheels.
+    pub train: GearTrain,
     known: Rows,
     /// (Hz) Least and largest speed of the input that the set has, with a margin.
     speeds_hz: [f64; 2],
@@ -131,22 +133,19 @@ pub fn adapt(
     let hidden = AdaptSettings { units: HIDDEN_MACHINES, seed, ..settings.clone() };
     let hidden = simulated.plan(&hidden, "unknown-rig", OF_HIDDEN)?;
     let all = plan.records() + hidden.records();
-    let shown = |done: u64, _: u64| (control.progress)(done, all);
-    let generated = generate(
-        &plan,
-        to,
-        Part::WHOLE,
-        &GenerateControl { progress: &shown, cancelled: control.cancelled },
-    )?;
+    let simulate = |plan: &Plan, to: &Destination, before: u64| {
+        let progress = |done: u64, _: u64| (control.progress)(before + done, all);
+        generate(
+            plan,
+            to,
+            Part::WHOLE,
+            &GenerateControl { progress: &progress, cancelled: control.cancelled },
+        )
+    };
+    let generated = simulate(&plan, to, 0)?;
     let folder = tempfile::TempDir::new().map_err(DatasetError::write("simulations"))?;
     let beside = Destination::directory(folder.path().join("hidden"));
-    let shown = |done: u64, _: u64| (control.progress)(plan.records() + done, all);
-    generate(
-        &hidden,
-        &beside,
-        Part::WHOLE,
-        &GenerateControl { progress: &shown, cancelled: control.cancelled },
-    )?;
+    simulate(&hidden, &beside, plan.records())?;
     let set = Rows::of_set(&plan, to)?;
     let speeds_hz = set.speeds_hz(SPEED_MARGIN);
     let known = windows(&plan, scenario, &train, recordings, speeds_hz);
@@ -154,7 +153,7 @@ pub fn adapt(
     hidden.units.iter_mut().for_each(|unit| *unit += settings.units);
     // Without a window nothing can be compared with it.
     let detector = Detector::learn(&set, &hidden, known.len() > 0)?;
-    let healthy = of_damage(&detector.probabilities(&known, &|_| true));
+    let healthy = of_damage(&detector.probabilities(&detector.features(&known, &|_| true)));
     let (expected, hidden_healthy) = expected(&detector, &hidden);
     // The recordings may be of one load and one speed; the simulated machines scatter.
     let own = if healthy.len() < FEWEST_WINDOWS { 0.0 } else { threshold(&healthy) };
@@ -192,7 +191,7 @@ impl Adaptation {
     /// # Errors
     /// Those of [`rows_like`]; a speed beside those of the set.
     pub fn judge(&self, recording: &SensorRecording) -> Result<Judged, DatasetError> {
-        let now = of_recording(&self.plan, &self.scenario, &self.train, recording)?;
+        let now = of_recording(&self.plan, (&self.scenario, &self.train), recording)?;
         let [slowest, fastest] = self.speeds_hz;
         if let Some(hz) = now.speed_hz.iter().find(|hz| !(slowest..=fastest).contains(*hz)) {
             return Err(DatasetError::refused(
@@ -204,12 +203,10 @@ impl Adaptation {
         }
         let count = now.len();
         let all = now.with(&self.known);
-        let is_known = |row: usize| row >= count;
-        let mut probabilities = self.detector.probabilities(&all, &is_known);
-        let mut p_values = self.detector.p_values(&all, &is_known);
-        probabilities.truncate(count);
-        p_values.truncate(count);
-        Ok(Judged { probabilities, p_values, threshold: self.threshold })
+        let mut features = self.detector.features(&all, &|row| row >= count);
+        features.truncate(count);
+        let probabilities = self.detector.probabilities(&features);
+        Ok(Judged { probabilities, p_values: self.detector.p_values(&features), threshold: self.threshold })
     }
 
     /// What was found, for programs.
@@ -243,8 +240,8 @@ impl Judged {
         let (all, unlike) = (self.p_values.len(), self.p_values.iter().filter(|p| **p < LIKE_NONE).count());
         (2 * unlike > all).then(|| {
             format!(
-                "{unlike} of {all} windows differ from the healthy recordings as no simulation does: check unit, sampling rate, speed, load and mounting; or it is \
-                 noise, or damage that is no class"
+                "{unlike} of {all} windows differ from the healthy recordings more than in any simulation: check unit, sampling rate, speed, load and mounting; noise, or \
+                 damage of another kind, is also possible"
             )
         })
     }
@@ -299,7 +296,7 @@ fn windows(
     let mut all = Rows::default();
     let steady = recordings.iter().filter(|recording| !recording.phase.is_run_up(recording.sampling_rate_hz));
     for recording in steady {
-        if let Ok(rows) = of_recording(plan, scenario, train, recording) {
+        if let Ok(rows) = of_recording(plan, (scenario, train), recording) {
             let at_speed = rows.filter(|row| (slowest..=fastest).contains(&rows.speed_hz[row]));
             all = all.with(&at_speed);
         }
@@ -311,8 +308,7 @@ fn windows(
 /// Windows of a recording by the first sensor, as long as a record.
 fn of_recording(
     plan: &Plan,
-    scenario: &Scenario,
-    train: &GearTrain,
+    (scenario, train): (&Scenario, &GearTrain),
     recording: &SensorRecording,
 ) -> Result<Rows, DatasetError> {
     let SensorRecording { values_g, sampling_rate_hz, shaft, phase, .. } = recording;
@@ -328,11 +324,13 @@ fn of_recording(
     Rows::of_recordings(plan, rows_like(plan, &[recording])?.parquet)
 }
 
-/// What a detector finds on machines that differ from its scenario, each by a threshold as that of the machine itself: of its other healthy records, and of
-/// those of the other machines; and the scores of all healthy records.
+/// What a detector finds on machines that differ from its scenario.
+///
+/// Each machine is judged by a threshold like that of the machine itself: of its other healthy records, and of those of the other machines. Machines of which too
+/// many simulations failed are left out. The second result are the probabilities of damage of all healthy records.
 fn expected(detector: &Detector, hidden: &Rows) -> (Expected, Vec<f64>) {
-    let is_healthy = |row: usize| hidden.labels[row].as_deref() == Some(HEALTHY);
-    let probabilities = detector.probabilities(hidden, &is_healthy);
+    let is_healthy = |row: usize| hidden.is_healthy(row);
+    let probabilities = detector.probabilities(&detector.features(hidden, &is_healthy));
     let scores = of_damage(&probabilities);
     let mut units = hidden.units.clone();
     units.sort_unstable();

@@ -13,6 +13,7 @@ use parquet::errors::ParquetError;
 use parquet::file::reader::ChunkReader;
 use rayon::prelude::*;
 
+use super::detector::HEALTHY;
 use crate::error::DatasetError;
 use crate::plan::Plan;
 use crate::shard::{FOLDER, Topic, columns};
@@ -144,6 +145,11 @@ impl Rows {
     /// Number of records.
     pub fn len(&self) -> usize {
         self.values.len()
+    }
+
+    /// Whether a record's label says that it is healthy.
+    pub fn is_healthy(&self, row: usize) -> bool {
+        self.labels[row].as_deref() == Some(HEALTHY)
     }
 
     /// Those records that a condition chooses.

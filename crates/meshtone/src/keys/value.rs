@@ -8,7 +8,6 @@ use super::files::NumberFiles;
 use super::range::Range;
 use super::table::{Keys, check_keys, describe_from, read_keys, written_pairs};
 use super::text::{array, inline_table, number};
-use crate::error::ScenarioError;
 
 /// Written form of a key's value.
 #[derive(Debug, Clone, PartialEq)]
@@ -120,8 +119,9 @@ impl<const N: usize> KeyValue for [f64; N] {
 /// Each number of an array, under its place in it.
 fn check_entries(entries: &[f64], key: &str, range: &Range, unit: &str) -> Check {
     let mut entries = entries.iter().enumerate();
-    let named = |index, error| ScenarioError { key: format!("{key}[{index}]"), ..error };
-    entries.try_for_each(|(index, entry)| entry.check(key, range, unit).map_err(|error| named(index, error)))
+    entries.try_for_each(|(index, entry)| {
+        entry.check(key, range, unit).map_err(|error| error.with_key(format!("{key}[{index}]")))
+    })
 }
 
 /// A list whose length other keys state.

@@ -140,8 +140,13 @@ fn checked(mesh: Mesh, gears: &NamedGears) -> Result<Mesh, ScenarioError> {
         return Err(ScenarioError::new(gears.whole(), "", problem).with_help(help));
     }
     if mesh.face.overlap() == 0.0 && mesh.contact_ratio > Mesh::MOST_CONTACT_RATIO {
-        let keys = [gears.whole(), gears.key("pressure_angle_deg")];
-        return Err(error::too_many_pairs(mesh.contact_ratio, Mesh::MOST_CONTACT_RATIO, keys));
+        let (ratio, most) = (mesh.contact_ratio, Mesh::MOST_CONTACT_RATIO);
+        let problem = format!(
+            "has a contact ratio of {ratio:.2} between the chamfers; must be at most {most:.1} under the model of contact"
+        );
+        let angle = gears.key("pressure_angle_deg");
+        let help = format!("raise {angle}; of one pair, model = \"linear\" has no such limit");
+        return Err(ScenarioError::new(gears.whole(), "", problem).with_help(help));
     }
     let meets = |table: &PairTable| table.kind.pairs_per_cycle > 0 && table.can_touch();
     if mesh.classes.iter().any(meets) { Ok(mesh) } else { Err(error::nothing_left()) }
@@ -176,7 +181,10 @@ impl MeshOf<'_> {
         let &MeshedPair { ref teeth, ref damaged, static_force_n, .. } = self.pair;
         let sequence = PairSequence::new(gears.pinion_teeth, gears.gear_teeth, damaged)?;
         if closer_um != 0.0 && static_force_n <= 0.0 {
-            return Err(error::no_load_along_the_face(gears.load()));
+            let (key, uneven) = gears.load();
+            let problem = "the mesh is unloaded, but its flanks are misaligned along the face; must be loaded, because the load determines how much of the face is in contact";
+            let help = format!("load the mesh by operation.brake_torque_nm, or set {uneven} to 0");
+            return Err(ScenarioError::new(key, "", problem).with_help(help));
         }
         let width_m = gears.face_width_mm * 1e-3;
         // While the whole face bears, wheels whose tilt is no unknown yield to a part of what closes their flanks.

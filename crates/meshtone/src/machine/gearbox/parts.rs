@@ -297,8 +297,10 @@ impl Bearing {
                 .with_help("give contact_angle_deg, or a negative clearance_um, which is an interference"));
         }
         let spall = |(index, defect)| {
-            Spall::new(defect, &geometry)
-                .map_err(|error| ScenarioError { key: format!("defect[{index}].{}", error.key), ..error })
+            Spall::new(defect, &geometry).map_err(|error| {
+                let key = format!("defect[{index}].{}", error.key);
+                error.with_key(key)
+            })
         };
         Ok(Some(RollingParts {
             geometry,

@@ -21,10 +21,9 @@ impl Scenario {
         check_values(self, rig)?;
         let honoured = self.without_ignored_keys();
         if honoured != *self {
-            check_values(&honoured, rig).map_err(|error| {
-                let name = self.model.name();
-                let problem = format!("{} (the {name} model always has the default)", error.problem);
-                model::with_help(self.model, ScenarioError { problem, ..error })
+            check_values(&honoured, rig).map_err(|mut error| {
+                error.problem += &format!(" (the {} model always has the default)", self.model.name());
+                model::with_help(self.model, error)
             })?;
         }
         duration::check(&honoured)?;

@@ -85,7 +85,7 @@ impl Scenario {
         for (index, shaft) in named {
             find(names, shaft, "shaft").map_err(|error| {
                 let key = entry_key("torque_ripple", index, ripple.len(), "shaft");
-                ScenarioError { key: format!("operation.{key}"), ..error }
+                error.with_key(format!("operation.{key}"))
             })?;
         }
         Ok(())
@@ -101,7 +101,7 @@ impl Scenario {
             Ok(parts) => parts.map(|parts| Ok((number, parts))),
             Err(error) => {
                 let key = entry_key("bearing", number, entries, &error.key);
-                Some(Err(ScenarioError { key, ..error }))
+                Some(Err(error.with_key(key)))
             }
         };
         let rolling: Vec<_> =
