@@ -20,7 +20,8 @@ pub struct Expression {
 pub struct Condition {
     text: String,
     left: Node,
-    comparison: Comparison,
+    /// One of [`parse::COMPARISONS`].
+    comparison: &'static str,
     right: Node,
 }
 
@@ -29,25 +30,8 @@ enum Node {
     Number(f64),
     Key(String),
     Negative(Box<Node>),
-    Of(Operation, Box<[Node; 2]>),
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Operation {
-    Plus,
-    Minus,
-    Times,
-    Over,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Comparison {
-    Less,
-    AtMost,
-    More,
-    AtLeast,
-    Equal,
-    Unequal,
+    /// One of [`parse::OPERATORS`] between two numbers.
+    Of(&'static str, Box<[Node; 2]>),
 }
 
 impl Expression {
@@ -114,12 +98,12 @@ impl Condition {
     pub fn holds(&self, number: &dyn Fn(&str) -> Option<f64>) -> Option<bool> {
         let (left, right) = (self.left.value(number)?, self.right.value(number)?);
         Some(match self.comparison {
-            Comparison::Less => left < right,
-            Comparison::AtMost => left <= right,
-            Comparison::More => left > right,
-            Comparison::AtLeast => left >= right,
-            Comparison::Equal => left == right,
-            Comparison::Unequal => left != right,
+            "<" => left < right,
+            "<=" => left <= right,
+            ">" => left > right,
+            ">=" => left >= right,
+            "==" => left == right,
+            _ => left != right,
         })
     }
 
@@ -150,11 +134,11 @@ impl Node {
             Self::Of(operation, nodes) => {
                 let [left, right] = &**nodes;
                 let (left, right) = (left.value(number)?, right.value(number)?);
-                match operation {
-                    Operation::Plus => left + right,
-                    Operation::Minus => left - right,
-                    Operation::Times => left * right,
-                    Operation::Over => left / right,
+                match *operation {
+                    "+" => left + right,
+                    "-" => left - right,
+                    "*" => left * right,
+                    _ => left / right,
                 }
             }
         })
