@@ -9,67 +9,58 @@ use super::{growth, over_zero, rule};
 
 const MOST_RECORDS: u64 = 1 << 40;
 
-/// The number of a class's records, or its part of all records.
-#[derive(Clone, Copy)]
-enum Share {
-    Count(u64),
-    Weight(f64),
-}
-
 pub(super) fn read_all(root: &TomlTable<'_>, base: &Scenario) -> ReadResult<Vec<Class>> {
     let listed = root.required("class", "the classes, [[class]] each")?;
     let values = listed.array()?;
     if values.is_empty() {
         return Err(listed.error("has no class; must have one or more"));
     }
-    let mut classes = Vec::with_capacity(values.len());
-    let mut shares = Vec::with_capacity(values.len());
+    let (mut classes, mut weights) = (Vec::with_capacity(values.len()), Vec::new());
     for value in &values {
-        let (class, share) = value.table()?.read(|table| class(table, base))?;
+        let (class, weight) = value.table()?.read(|table| class(table, base))?;
         if classes.iter().any(|other: &Class| other.label == class.label) {
             return Err(value.error(format!("has the label \"{}\" of another class", class.label)));
         }
         classes.push(class);
-        shares.push(share);
+        weights.extend(weight.map(|weight| (weight, value)));
     }
-    let counts = counts(root, &values, &shares)?;
-    classes.iter_mut().zip(counts).for_each(|(class, count)| class.count = count);
+    if let Some(counts) = weighted_counts(root, &classes, &weights)? {
+        classes.iter_mut().zip(counts).for_each(|(class, count)| class.count = count);
+    }
     Ok(classes)
 }
 
-/// The number of records of each class: all classes have counts, or all have weights.
-fn counts(root: &TomlTable<'_>, classes: &[TomlValue<'_>], shares: &[Share]) -> ReadResult<Vec<u64>> {
-    let (mut counts, mut weights) = (Vec::new(), Vec::new());
-    for (share, class) in shares.iter().zip(classes) {
-        match *share {
-            Share::Count(count) => counts.push(count),
-            Share::Weight(weight) => weights.push((weight, class)),
-        }
-    }
-    if weights.is_empty() {
-        let sum: u64 = counts.iter().sum();
+/// The number of records of each class by the weights; none where all classes have counts.
+fn weighted_counts(
+    root: &TomlTable<'_>,
+    classes: &[Class],
+    weights: &[(f64, &TomlValue<'_>)],
+) -> ReadResult<Option<Vec<u64>>> {
+    let [(_, first), ..] = weights else {
+        let sum: u64 = classes.iter().map(|class| class.count).sum();
         if let Some(value) = root.optional("records")
             && value.integer(1..=MOST_RECORDS)? != sum
         {
             let problem = format!("the classes' counts add up to {sum}; must be the same, or left out");
             return Err(value.error(problem));
         }
-        return Ok(counts);
-    }
-    if !counts.is_empty() {
+        return Ok(None);
+    };
+    if weights.len() < classes.len() {
         let problem = "has a weight where another class has a count; must be all of one kind";
-        return Err(weights[0].1.error(problem));
+        return Err(first.error(problem));
     }
     let records = root.required("records", "how many records there are, where classes have weights")?;
-    let weights: Vec<f64> = weights.into_iter().map(|(weight, _)| weight).collect();
-    let counts = largest_remainder(&weights, records.integer(1..=MOST_RECORDS)?);
+    let parts: Vec<f64> = weights.iter().map(|(weight, _)| *weight).collect();
+    let counts = largest_remainder(&parts, records.integer(1..=MOST_RECORDS)?);
     if let Some(empty) = counts.iter().position(|&count| count == 0) {
-        return Err(classes[empty].error("has so small a weight that no record is left for it"));
+        return Err(weights[empty].1.error("has so small a weight that no record is left for it"));
     }
-    Ok(counts)
+    Ok(Some(counts))
 }
 
-fn class(table: &TomlTable<'_>, base: &Scenario) -> ReadResult<(Class, Share)> {
+/// Reads a class, and its weight where it has no count.
+fn class(table: &TomlTable<'_>, base: &Scenario) -> ReadResult<(Class, Option<f64>)> {
     let label = table.required("label", "the class's name in the column label")?;
     let name = label.string()?;
     if name.is_empty() {
@@ -77,15 +68,15 @@ fn class(table: &TomlTable<'_>, base: &Scenario) -> ReadResult<(Class, Share)> {
     }
     let faults = ClassFault::read_all(table, base)?;
     let severity = severity(table, !faults.is_empty())?;
-    let share = match (table.optional("count"), table.optional("weight")) {
-        (Some(count), None) => Share::Count(count.integer(1..=MOST_RECORDS)?),
-        (None, Some(weight)) => Share::Weight(over_zero(&weight, "must be more than 0")?),
-        (None, None) => Share::Weight(1.0),
+    let (count, weight) = match (table.optional("count"), table.optional("weight")) {
+        (Some(count), None) => (count.integer(1..=MOST_RECORDS)?, None),
+        (None, Some(weight)) => (0, Some(over_zero(&weight, "must be more than 0")?)),
+        (None, None) => (0, Some(1.0)),
         (Some(_), Some(_)) => return Err(table.error("weight", "given beside count; give one of the two")),
     };
     let rules = rule::read_all(table)?;
     let growth = table.read_optional("growth", |value| growth::read(value, &faults))?;
-    Ok((Class { label: name.to_owned(), faults, count: 0, severity, rules, growth }, share))
+    Ok((Class { label: name.to_owned(), faults, count, severity, rules, growth }, weight))
 }
 
 fn severity(table: &TomlTable<'_>, faulty: bool) -> ReadResult<Severity> {

@@ -8,7 +8,7 @@ use meshtone_io::experiment::Tuned;
 use meshtone_toml::{ReadResult, TomlTable, TomlValue};
 
 use super::super::{AveragedWheels, Keep, MOST_SHARD_RECORDS, OverAngle};
-use super::{number_where, over_zero};
+use super::{distinct, number_where, over_zero};
 
 const RATE_HZ: f64 = 25e3;
 const LARGEST_RATE_HZ: f64 = 1e7;
@@ -35,15 +35,7 @@ pub(super) fn read(table: &TomlTable<'_>, base: &Scenario, tuned: Option<&Tuned>
         return Err(table.error("sampling_rate_hz", problem).with_help("raise solver.sampling_rate_hz"));
     }
     let channels = table.read_optional("channels", |value| {
-        let mut chosen = Vec::new();
-        for value in value.array()? {
-            let channel = read_channel(&value, &known.channels)?;
-            if chosen.contains(&channel) {
-                return Err(value.error("is named twice"));
-            }
-            chosen.push(channel);
-        }
-        Ok(chosen)
+        distinct(value, "is named twice", |value| read_channel(value, &known.channels))
     })?;
     let duration_s = table.read_optional("duration_s", |value| over_zero(value, "must be more than 0 s"))?;
     let of_tuned = || tuned.map(|tuned| AveragedWheels::One(tuned.wheel.into()));
@@ -117,14 +109,7 @@ fn wheels(value: &TomlValue<'_>, base: &Scenario) -> ReadResult<AveragedWheels> 
     if !value.is_array() {
         return value.choice(&choices).map(AveragedWheels::One);
     }
-    let mut chosen = Vec::new();
-    for value in value.array()? {
-        let wheel = value.choice(&choices)?;
-        if chosen.contains(&wheel) {
-            return Err(value.error("is named twice"));
-        }
-        chosen.push(wheel);
-    }
+    let chosen = distinct(value, "is named twice", |value| value.choice(&choices))?;
     if chosen.is_empty() {
         return Err(value.error("is empty; must name a wheel or several"));
     }
@@ -156,19 +141,17 @@ impl Known {
     fn of(base: &Scenario) -> Self {
         let sensors = base.all_sensors();
         let of_sensors: Vec<Channel> = sensors.iter().map(|sensor| Channel::Sensor(sensor.name())).collect();
-        let leading = Channel::leading(&sensors);
-        if base.rig().is_none() {
-            let (accelerations, usual) = (of_sensors.clone(), of_sensors.clone());
-            return Self { channels: of_sensors, accelerations, usual, leading };
-        }
-        let horizontal_and_vertical =
-            || [ChannelKind::Horizontal, ChannelKind::Vertical].map(Channel::from).into();
-        Self {
-            channels: Channel::all(&sensors),
-            accelerations: accelerations(&sensors),
-            usual: if sensors.is_empty() { horizontal_and_vertical() } else { of_sensors },
-            leading,
-        }
+        let (channels, accelerations) = match base.rig() {
+            Some(_) => (Channel::all(&sensors), accelerations(&sensors)),
+            None => (of_sensors.clone(), of_sensors.clone()),
+        };
+        let usual = match base.rig() {
+            Some(_) if sensors.is_empty() => {
+                [ChannelKind::Horizontal, ChannelKind::Vertical].map(Channel::from).into()
+            }
+            _ => of_sensors,
+        };
+        Self { channels, accelerations, usual, leading: Channel::leading(&sensors) }
     }
 }
 

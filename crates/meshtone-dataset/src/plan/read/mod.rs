@@ -232,18 +232,32 @@ fn date<'a>(value: &TomlValue<'a>) -> ReadResult<&'a str> {
 
 /// The questions that the data set asks.
 fn questions(value: &TomlValue<'_>, classes: &[Class]) -> ReadResult<Vec<Question>> {
-    let mut questions = Vec::new();
-    for value in value.array()? {
+    distinct(value, "is asked twice", |value| {
         let question = value.choice(&Question::NAMES)?;
-        if let Some(obstacle) = question.obstacle(classes) {
-            return Err(value.error(obstacle).with_help("add such a class, or leave the question out"));
+        let Some(obstacle) = question.obstacle(classes) else { return Ok(question) };
+        Err(value.error(obstacle).with_help("add such a class, or leave the question out"))
+    })
+}
+
+/// Reads a list in which nothing occurs twice.
+///
+/// # Arguments
+/// * `twice` - the problem of an entry that another one equals
+/// * `read` - reads an entry
+fn distinct<T: PartialEq>(
+    listed: &TomlValue<'_>,
+    twice: &str,
+    read: impl Fn(&TomlValue<'_>) -> ReadResult<T>,
+) -> ReadResult<Vec<T>> {
+    let mut entries = Vec::new();
+    for value in listed.array()? {
+        let entry = read(&value)?;
+        if entries.contains(&entry) {
+            return Err(value.error(twice));
         }
-        if questions.contains(&question) {
-            return Err(value.error("is asked twice"));
-        }
-        questions.push(question);
+        entries.push(entry);
     }
-    Ok(questions)
+    Ok(entries)
 }
 
 fn tuned(value: &TomlValue<'_>, reading: &mut Reading) -> ReadResult<Tuned> {
