@@ -8,7 +8,7 @@ use crate::croissant;
 use crate::digest::Digest;
 use crate::error::DatasetError;
 use crate::manifest::{self, CARD, CROISSANT, Document, MANIFEST, PREVIEW};
-use crate::plan::{Plan, column_part};
+use crate::plan::{Class, Plan, column_part};
 use crate::shard::{self, Column, Shards, Topic, Wanted};
 use crate::store::{Destination, Files};
 use crate::words::{counted, words_of};
@@ -32,20 +32,6 @@ impl Finished<'_> {
     }
 }
 
-/// Finishes a data set whose shards are all there. Returns whether it is complete.
-pub(crate) fn finish_if_complete(
-    plan: &Plan,
-    shards: &Shards,
-    to: &Destination,
-) -> Result<bool, DatasetError> {
-    let files = to.files()?;
-    let is_complete = (0..shards.count()).all(|shard| files.contains_key(&shards.name(shard)));
-    if is_complete {
-        finish(plan, shards, to, &files)?;
-    }
-    Ok(is_complete)
-}
-
 /// Writes data card, preview, Croissant metadata and manifest of a data set whose shards are all there. Returns what these hold.
 pub(crate) fn finish(
     plan: &Plan,
@@ -62,19 +48,17 @@ pub(crate) fn finish(
     let set = Finished { plan, shards, contents: &contents, columns: &columns };
     let figure = dataset_figure(&preview(&set, &summary_columns, to));
     let mut documents = Vec::new();
-    let mut write = |name: &str, bytes: &[u8]| {
+    let write = |documents: &mut Vec<Document>, name: &str, bytes: &[u8]| {
         documents.push(Document { name: name.to_owned(), digest: Digest::of(bytes) });
+        documents.sort_by(|a, b| a.name.cmp(&b.name));
         to.write_bytes(name, bytes)
     };
-    write(PREVIEW[0], figure.svg().as_bytes())?;
-    write(PREVIEW[1], &figure.png()?)?;
-    write(CARD, card::card(&set).as_bytes())?;
-    plan.files.iter().try_for_each(|file| write(file.name, file.text.as_bytes()))?;
-    documents.sort_by(|a, b| a.name.cmp(&b.name));
+    write(&mut documents, PREVIEW[0], figure.svg().as_bytes())?;
+    write(&mut documents, PREVIEW[1], &figure.png()?)?;
+    write(&mut documents, CARD, card::card(&set).as_bytes())?;
+    plan.files.iter().try_for_each(|file| write(&mut documents, file.name, file.text.as_bytes()))?;
     let metadata = croissant::metadata(&set, &documents);
-    to.write_bytes(CROISSANT, metadata.as_bytes())?;
-    documents.push(Document { name: CROISSANT.to_owned(), digest: Digest::of(metadata.as_bytes()) });
-    documents.sort_by(|a, b| a.name.cmp(&b.name));
+    write(&mut documents, CROISSANT, metadata.as_bytes())?;
     // The manifest is written last: a data set with it has everything.
     to.write_bytes(MANIFEST, manifest::complete(&set, &documents).as_bytes())?;
     Ok(contents)
@@ -93,27 +77,28 @@ fn preview(set: &Finished, summary_columns: &SummaryColumns<'_>, to: &Destinatio
         let values = sampled.iter().map(|record| record.values[place]).collect();
         Some(PreviewColumn { name: words_of(&column.name), values })
     };
-    let classes: Vec<String> = plan.content.classes.iter().map(|class| class.label.clone()).collect();
+    let classes = &plan.content.classes;
+    let labels: Vec<String> = classes.iter().map(|class| class.label.clone()).collect();
     let of_name =
         |name: &str| columns.iter().find(|column| column.topic == Topic::Revolution && column.name == name);
     // Damage shows in the average of its own wheel.
-    let shown = |label: &str| {
+    let shown = |class: &Class| {
         let keep = &plan.content.keep;
-        let class = plan.content.classes.iter().find(|class| class.label == *label);
-        let damaged = class.and_then(|class| class.faults.first()?.teeth()).map(|of| of.wheel.as_str());
-        let averaged = keep.wheel.all().iter().find(|wheel| damaged == Some(wheel.as_str()));
+        let damaged = class.faults.first().and_then(|fault| Some(&fault.teeth()?.wheel));
+        let averaged = keep.wheel.all().iter().find(|wheel| damaged == Some(*wheel));
         let prefix = keep.wheel.prefix(averaged.unwrap_or(&keep.wheel.all()[0]));
         let of_revolution = SHOWN.iter().find_map(|name| of_name(&format!("{prefix}{name}")));
         of_revolution.or_else(|| columns.iter().find(|column| column.is_signal()))
     };
-    let first = classes.first().and_then(|label| shown(label));
+    let first = classes.first().and_then(shown);
     let signal_name = SHOWN.into_iter().find(|name| first.is_some_and(|column| column.name.ends_with(name)));
     let signal_name = signal_name.or_else(|| first.map(|column| column.name.as_str()));
-    let examples = classes.iter().filter_map(|label| {
-        let &(shard, row) = contents.first.get(label)?;
+    let examples = classes.iter().filter_map(|class| {
+        let &(shard, row) = contents.first.get(&class.label)?;
         let file = shards.name(shard);
-        let signal = shown(label).map_or_else(Vec::new, |column| signal(to, &file, row, &column.name));
-        Some(Example { label: label.clone(), conditions: conditions(plan, to, &file, row), signal })
+        let read = |column: &Column| to.read_shard(&file, Wanted::Signal { column: &column.name, row }).ok();
+        let signal = shown(class).and_then(read).map(|read| read.signal).unwrap_or_default();
+        Some(Example { label: class.label.clone(), conditions: conditions(plan, to, &file, row), signal })
     });
     let place = |names: &[String], name: &str| names.iter().position(|other| other == name).unwrap_or(0);
     let splits: Vec<String> = plan.content.splits.names().into_iter().map(str::to_owned).collect();
@@ -134,19 +119,13 @@ fn preview(set: &Finished, summary_columns: &SummaryColumns<'_>, to: &Destinatio
         over_angle: plan.content.keep.over_angle.is_some()
             || first.is_some_and(|column| column.topic != Topic::Channel),
         examples: examples.collect(),
-        class_of: sampled.iter().map(|record| place(&classes, &record.label)).collect(),
+        class_of: sampled.iter().map(|record| place(&labels, &record.label)).collect(),
         split_of: sampled.iter().map(|record| place(&splits, &record.split)).collect(),
-        classes,
+        classes: labels,
         splits,
         keys: columns.iter().filter(varies).filter_map(shown_column).collect(),
         indicators: indicators.filter_map(shown_column).collect(),
     }
-}
-
-/// One signal of one record.
-fn signal(to: &Destination, shard: &str, row: usize, column: &str) -> Vec<f64> {
-    let read = to.read_shard(shard, Wanted::Signal { column, row });
-    read.map(|read| read.signal).unwrap_or_default()
 }
 
 /// Teeth, speed, load and severity of one record, in words.

@@ -20,8 +20,9 @@ use crate::finish;
 use crate::manifest::{self, CARD, MANIFEST, PREVIEW};
 use crate::plan::{Plan, with_faults};
 use crate::record::{KeepRecords, Record, Role, simulated_scenario};
-use crate::shard::{self, Column, FailedRecord, Item, ShardMetadata, Shards, WARNINGS, Wanted};
+use crate::shard::{self, Column, FailedRecord, Item, Shards, WARNINGS, Wanted};
 use crate::store::Destination;
+use crate::verify::Check;
 
 /// Largest number of records that wait to be written.
 const WAITING: usize = 32;
@@ -180,7 +181,11 @@ pub fn generate(
     let PartContents { missing, mut generated, .. } = there.map_or_else(look, Ok)?;
     let run = Run { plan, sampler: &sampler, shards: &shards, to, control };
     run.generate(&missing, &mut generated)?;
-    generated.complete = finish::finish_if_complete(plan, &shards, to)?;
+    let files = to.files()?;
+    generated.complete = (0..shards.count()).all(|shard| files.contains_key(&shards.name(shard)));
+    if generated.complete {
+        finish::finish(plan, &shards, to, &files)?;
+    }
     Ok(generated)
 }
 
@@ -217,17 +222,12 @@ impl PartContents {
         let own = (0..shards.count()).into_par_iter().filter(|&shard| part.has(shard));
         let found = own.map(|shard| {
             let name = shards.name(shard);
-            let read = files.contains_key(&name).then(|| to.proven_shard(&name, Wanted::Columns(&[])));
-            let wanted = shards.metadata(plan.hash(), shard);
-            let is_it = |read: &ShardMetadata| read.is_of(&wanted);
-            (
-                shard,
-                read.map(|read| {
-                    read.and_then(
-                        |read| if is_it(&read.metadata) { Ok(read) } else { Err(OTHER_SHARD.to_owned()) },
-                    )
-                }),
-            )
+            let read = files.contains_key(&name).then(|| {
+                let read = to.checked_shard(&name, &[], Check::Bytes)?;
+                let is_it = read.metadata.is_of(&shards.metadata(plan.hash(), shard));
+                if is_it { Ok(read) } else { Err(OTHER_SHARD.to_owned()) }
+            });
+            (shard, read)
         });
         let mut missing = Vec::new();
         for (shard, found) in found.collect::<Vec<_>>() {
@@ -318,15 +318,13 @@ impl Run<'_> {
         let take = |number: usize, result: Result<Result<Box<Record>, String>, meshtone::Error>| {
             let Some((role, failed)) = lock(&asked).roles.remove(&number) else { return };
             failed.into_iter().for_each(|failed| send(Item::Failed(failed)));
-            match (result.map_err(|error| explained(&error, error.help())).flatten(), role) {
-                (Ok(record), Role::Record(..)) => send(Item::Record(record)),
-                (Ok(record), Role::HealthyTwin(..)) => send(Item::HealthyTwin(record)),
-                (Err(reason), Role::Record(drawn, _)) => {
-                    send(Item::Failed(FailedRecord { record: drawn.index, reason }));
-                }
+            send(match result.map_err(|error| explained(&error, error.help())).flatten() {
+                Ok(record) if role.is_twin => Item::HealthyTwin(record),
+                Ok(record) => Item::Record(record),
                 // The failure of a twin is reported with its record, which needs the twin.
-                (Err(_), Role::HealthyTwin(..)) => {}
-            }
+                Err(_) if role.is_twin => return,
+                Err(reason) => Item::Failed(FailedRecord { record: role.drawn.index, reason }),
+            });
         };
         if self.plan.content.base.rig().is_some() {
             simulate_many(scenarios, &keep, &control, take);
@@ -356,12 +354,13 @@ impl Run<'_> {
                 return Vec::new();
             }
         };
+        let role = Role { drawn: record, window, is_twin: false };
         let mut scenarios = vec![scenario];
         if self.plan.content.tuned.is_some() && !scenarios[0].faults.is_empty() {
-            asked.add(Role::HealthyTwin(record.clone(), window.clone()));
+            asked.add(Role { is_twin: true, ..role.clone() });
             scenarios.insert(0, with_faults(&scenarios[0], &[]));
         }
-        asked.add(Role::Record(record, window));
+        asked.add(role);
         scenarios
     }
 

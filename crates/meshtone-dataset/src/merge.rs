@@ -12,7 +12,7 @@ use crate::finish;
 use crate::generate::Generated;
 use crate::manifest::{self, MANIFEST};
 use crate::plan::{Plan, PlanFile};
-use crate::shard::{Shards, Wanted};
+use crate::shard::{ReadShard, Shards};
 use crate::store::Destination;
 use crate::verify::Check;
 
@@ -65,13 +65,9 @@ pub fn merge(parts: &[Destination], to: &Destination, check: Check) -> Result<Ge
     let mut merged = Generated { complete: true, ..Generated::default() };
     for shard in 0..shards.count() {
         let name = shards.name(shard);
-        let wanted = Wanted::Columns(&[]);
-        let read = target.shards.contains(&shard).then(|| match check {
-            Check::Sizes => to.read_shard(&name, wanted).ok(),
-            Check::Bytes => to.proven_shard(&name, wanted).ok(),
-        });
         let metadata = shards.metadata(plan.hash(), shard);
-        if read.flatten().is_some_and(|read| read.metadata.is_of(&metadata)) {
+        let is_it = |read: ReadShard| read.metadata.is_of(&metadata);
+        if target.shards.contains(&shard) && to.checked_shard(&name, &[], check).is_ok_and(is_it) {
             merged.kept_shards += 1;
             continue;
         }
@@ -92,16 +88,12 @@ fn claim(to: &Destination) -> Result<Option<Claim>, DatasetError> {
     to.claim("merge", "is merging parts in")
 }
 
-fn is_same(place: &Destination, other: &Destination) -> bool {
-    place.to_string() == other.to_string()
-}
-
 /// Copies a shard from the first part that has an undamaged copy.
 fn take_over(shard: u64, name: &str, places: &[MergeSource], to: &Destination) -> Result<(), DatasetError> {
     let having: Vec<&MergeSource> = places.iter().filter(|place| place.shards.contains(&shard)).collect();
     for place in &having {
         // The copy in `to` has already been found missing or damaged.
-        if !is_same(place.at, to) && to.take_over(place.at, name)? {
+        if place.at.to_string() != to.to_string() && to.take_over(place.at, name)? {
             return Ok(());
         }
     }

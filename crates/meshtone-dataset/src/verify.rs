@@ -8,8 +8,8 @@ use rayon::prelude::*;
 use crate::contents::{Counts, SHARDS_AT_A_TIME, ShardFile, WRONG_BYTES, add_counts, count};
 use crate::error::DatasetError;
 use crate::manifest::{self, CARD, Document, MANIFEST, PREVIEW, ReadManifest};
-use crate::shard::{FOLDER, ReadShard, Shards, Wanted};
-use crate::store::{Destination, Files, unreadable};
+use crate::shard::{FOLDER, ReadShard, Shards};
+use crate::store::{Destination, Files};
 use crate::words::counted;
 
 /// Shards by the names of their files.
@@ -106,11 +106,11 @@ impl Verified {
     fn read_footers(&mut self, place: &Destination, files: &Files) -> ListedFiles {
         let mut listed = BTreeMap::new();
         for (name, &bytes) in files.iter().filter(|(name, _)| Shards::is_name(name)) {
-            match place.read_shard(name, Wanted::Columns(&[])) {
-                Ok(read) => {
-                    listed.insert(name.clone(), ShardFile { bytes, seal: read.seal, rows: read.rows });
+            match place.checked_shard(name, &[], Check::Sizes) {
+                Ok(ReadShard { seal, rows, .. }) => {
+                    listed.insert(name.clone(), ShardFile { bytes, seal, rows });
                 }
-                Err(error) => self.object(name, unreadable(&error)),
+                Err(problem) => self.object(name, problem),
             }
         }
         listed
@@ -170,7 +170,7 @@ impl Verified {
         check: Check,
     ) {
         // Of a damaged shard the columns may be others.
-        let read = |(name, _): &(&String, &ShardFile)| read_shard(place, name, &[], check).ok();
+        let read = |(name, _): &(&String, &ShardFile)| place.checked_shard(name, &[], check).ok();
         let schema = shards.iter().find_map(read).map(|read| read.schema).unwrap_or_default();
         let mut counts = Counts::new();
         for some in shards.chunks(SHARDS_AT_A_TIME as usize) {
@@ -190,14 +190,6 @@ impl Verified {
     }
 }
 
-/// Reads some columns of a shard, or in words what is wrong with it.
-fn read_shard(place: &Destination, name: &str, columns: &[&str], check: Check) -> Result<ReadShard, String> {
-    match check {
-        Check::Sizes => place.read_shard(name, Wanted::Columns(&[])).map_err(|error| unreadable(&error)),
-        Check::Bytes => place.proven_shard(name, Wanted::Columns(columns)),
-    }
-}
-
 /// The records of a shard by split and label where all of its bytes are checked, or what is wrong with it.
 fn check_shard(
     place: &Destination,
@@ -207,7 +199,8 @@ fn check_shard(
     plan: &str,
     check: Check,
 ) -> Result<Counts, String> {
-    let read = read_shard(place, name, &["label", "split"], check)?;
+    let counted_by: &[&str] = if check == Check::Bytes { &["label", "split"] } else { &[] };
+    let read = place.checked_shard(name, counted_by, check)?;
     if read.seal != file.seal {
         return Err(WRONG_BYTES.to_owned());
     }

@@ -8,7 +8,7 @@ use std::error::Error;
 
 use meshtone::batch::{Observation, SignalRecorder};
 use meshtone::damage::damages_of_fault;
-use meshtone::scenario::{Fault, ScenarioWarning, Sensor};
+use meshtone::scenario::{ScenarioWarning, Sensor};
 use meshtone::sensor::{Channel, ContactFigures, SignalSource};
 use meshtone::signal::{AngleZero, AntiAliasing, Edge, GearTrain, MeanPart, ShaftPhase, SignalError};
 use meshtone::tuning::DifferenceChain;
@@ -19,65 +19,6 @@ use super::window::Window;
 use super::{Record, RecordFault, RecordSpall, RecordWheel, TurningWheel, noise, path, start};
 use crate::draw::DrawnRecord;
 use crate::plan::{Content, FaultPlace, FaultyBase, Keep};
-
-/// Makes a record of the simulation of a pair.
-pub(super) fn record(
-    content: &Content,
-    drawn: DrawnRecord,
-    window: Window,
-    stages: &Stages,
-    observation: Observation,
-    recorder: SignalRecorder,
-) -> Result<Record, Box<dyn Error>> {
-    let view = View::new(content, window, stages);
-    let samples = view.before_linear_sensors(stages, recorder);
-    let parts = stages.scenario.model.teeth_part();
-    let slack = if parts { observation.apart_fraction } else { observation.tension_fraction };
-    view.record(content, drawn, &samples, &observation.warnings, vec![slack])
-}
-
-/// Makes a record of the simulation of a train, whose sensors are applied already.
-pub(super) fn record_of_train(
-    content: &Content,
-    drawn: DrawnRecord,
-    window: Window,
-    simulation: Simulation,
-) -> Result<Record, Box<dyn Error>> {
-    // The error is only estimated, as that of a pair's record.
-    let of_signals = simulation.warnings_of_signals(StepJudgement::Estimated);
-    let warnings = [simulation.stages.warnings(), of_signals].concat();
-    let Simulation { stages, channels, .. } = &simulation;
-    let single = |channel: &Channel| {
-        let name = channel.name();
-        let signal = channels.signal(&name);
-        let signal = signal.ok_or_else(|| format!("the simulation of the gearbox has no signal `{name}`"))?;
-        Ok::<_, String>(signal.iter().map(|&value| value as f32).collect())
-    };
-    let samples: Vec<Vec<f32>> = content.keep.simulated().iter().map(single).collect::<Result<_, _>>()?;
-    let apart = |mesh| ContactFigures::of_force(channels.of(SignalSource::MeshForce(mesh))).apart_fraction;
-    let apart = (0..stages.meshes.len()).map(apart).collect();
-    View::new(content, window, stages).record(content, drawn, &samples, &warnings, apart)
-}
-
-/// Makes the record of a healthy twin, which has only the difference signal.
-pub(super) fn twin(
-    content: &Content,
-    drawn: DrawnRecord,
-    window: Window,
-    stages: &Stages,
-    recorder: SignalRecorder,
-) -> Result<Record, SignalError> {
-    let view = View::new(content, window, stages);
-    let simulated = content.keep.simulated();
-    let samples = view.before_linear_sensors(stages, recorder);
-    let mut record = view.empty(content, drawn);
-    if let Some(analysed) = simulated.iter().position(|channel| *channel == content.keep.analysed) {
-        let only = analysed..analysed + 1;
-        let channels = view.passed(&record.drawn, &simulated[only.clone()], &samples[only])?;
-        record.clean_difference = view.clean_difference(&channels[0], content)?;
-    }
-    Ok(record)
-}
 
 /// Growth is judged by the first and the last part of a record, one of so many.
 const END: usize = 10;
@@ -108,31 +49,9 @@ fn refuse_growth(channels: &[Channel], samples: &[Vec<f32>], damping_key: &str) 
     Ok(())
 }
 
-/// A fault of teeth, with its severity; none where there is no such fault.
-///
-/// # Arguments
-/// * `stages` - of the simulation
-/// * `number` - of the fault
-fn fault_of_teeth(stages: &Stages, number: usize) -> Option<(&Fault, f64)> {
-    let fault = stages.scenario.placed_faults().into_iter().nth(number).map(|(_, fault)| fault);
-    fault.zip(stages.fault_severities.get(number).copied())
-}
-
-/// A spall of a bearing; none where there is no such spall.
-///
-/// # Arguments
-/// * `stages` - of the simulation
-/// * `bearing` - number of the bearing
-/// * `number` - of the spall among those of its bearing
-fn spall(stages: &Stages, bearing: usize, number: usize) -> Option<RecordSpall> {
-    let (_, rolling) = stages.bearings.iter().find(|(other, _)| *other == bearing)?;
-    let sizes = *rolling.parts.spalls.get(number)?;
-    let order = rolling.parts.geometry.defect_orders().of_defect(sizes.place);
-    Some(RecordSpall { bearing: stages.scenario.bearings()[bearing].seat_name(), sizes, order })
-}
-
 /// A simulation that is read like a recording: from the mark on, at the sampling rate of the data set.
-struct View<'a> {
+pub(super) struct View<'a> {
+    content: &'a Content,
     keep: &'a Keep,
     simulated: &'a Stages,
     window: Window,
@@ -141,8 +60,58 @@ struct View<'a> {
 }
 
 impl<'a> View<'a> {
-    fn new(content: &'a Content, window: Window, simulated: &'a Stages) -> Self {
-        Self { keep: &content.keep, simulated, window, input_rev: OnceCell::new() }
+    pub fn new(content: &'a Content, window: Window, simulated: &'a Stages) -> Self {
+        Self { content, keep: &content.keep, simulated, window, input_rev: OnceCell::new() }
+    }
+
+    /// Makes a record of the simulation of a pair.
+    pub fn record_of_pair(
+        &self,
+        drawn: DrawnRecord,
+        observation: Observation,
+        recorder: SignalRecorder,
+    ) -> Result<Record, Box<dyn Error>> {
+        let samples = self.before_linear_sensors(recorder);
+        let parts = self.simulated.scenario.model.teeth_part();
+        let slack = if parts { observation.apart_fraction } else { observation.tension_fraction };
+        self.record(drawn, &samples, &observation.warnings, vec![slack])
+    }
+
+    /// Makes a record of the simulation of a train, whose sensors are applied already.
+    pub fn record_of_train(
+        &self,
+        drawn: DrawnRecord,
+        simulation: &Simulation,
+    ) -> Result<Record, Box<dyn Error>> {
+        // The error is only estimated, as that of a pair's record.
+        let of_signals = simulation.warnings_of_signals(StepJudgement::Estimated);
+        let warnings = [self.simulated.warnings(), of_signals].concat();
+        let channels = &simulation.channels;
+        let single = |channel: &Channel| {
+            let name = channel.name();
+            let signal = channels.signal(&name);
+            let signal =
+                signal.ok_or_else(|| format!("the simulation of the gearbox has no signal `{name}`"))?;
+            Ok::<_, String>(signal.iter().map(|&value| value as f32).collect())
+        };
+        let samples: Vec<Vec<f32>> = self.keep.simulated().iter().map(single).collect::<Result<_, _>>()?;
+        let apart =
+            |mesh| ContactFigures::of_force(channels.of(SignalSource::MeshForce(mesh))).apart_fraction;
+        let apart = (0..self.simulated.meshes.len()).map(apart).collect();
+        self.record(drawn, &samples, &warnings, apart)
+    }
+
+    /// Makes the record of a healthy twin, which has only the difference signal.
+    pub fn twin(&self, drawn: DrawnRecord, recorder: SignalRecorder) -> Result<Record, SignalError> {
+        let simulated = self.keep.simulated();
+        let samples = self.before_linear_sensors(recorder);
+        let mut record = self.empty(drawn);
+        if let Some(analysed) = simulated.iter().position(|channel| *channel == self.keep.analysed) {
+            let only = analysed..analysed + 1;
+            let channels = self.passed(&record.drawn, &simulated[only.clone()], &samples[only])?;
+            record.clean_difference = self.clean_difference(&channels[0])?;
+        }
+        Ok(record)
     }
 
     /// Makes the record.
@@ -151,7 +120,6 @@ impl<'a> View<'a> {
     /// the difference before the noise; everything else is computed with it.
     fn record(
         &self,
-        content: &Content,
         drawn: DrawnRecord,
         samples: &[Vec<f32>],
         warnings: &[ScenarioWarning],
@@ -168,18 +136,18 @@ impl<'a> View<'a> {
         }
         let mut channels = self.passed(&drawn, &simulated, samples)?;
         let analysed = simulated.iter().position(|channel| *channel == keep.analysed);
-        let mut record = Record { slack_fractions, ..self.empty(content, drawn) };
+        let mut record = Record { slack_fractions, ..self.empty(drawn) };
         for warning in warnings {
             if !record.warnings.contains(&warning.kind) {
                 record.warnings.push(warning.kind);
             }
         }
         if let Some(analysed) = analysed {
-            record.clean_difference = self.clean_difference(&channels[analysed], content)?;
+            record.clean_difference = self.clean_difference(&channels[analysed])?;
         }
         for (number, (kind, channel)) in simulated.iter().zip(&mut channels).enumerate() {
             if kind.is_acceleration() {
-                let (background, rate_hz) = (content.background.as_ref(), keep.sampling_rate_hz);
+                let (background, rate_hz) = (self.content.background.as_ref(), keep.sampling_rate_hz);
                 noise::add(&record.drawn, background, number as u64, rate_hz, channel)?;
             }
         }
@@ -201,13 +169,13 @@ impl<'a> View<'a> {
     fn fault(&self, place: FaultPlace) -> Option<RecordFault> {
         match place {
             FaultPlace::Teeth(number) => {
-                let (fault, severity) = fault_of_teeth(self.simulated, number)?;
+                let (_, fault) = self.simulated.scenario.placed_faults().into_iter().nth(number)?;
                 let pairs = self.simulated.pairs.iter();
                 Some(RecordFault {
                     kind: fault.damage.kind(),
                     wheel: Some(fault.wheel.clone()),
                     tooth: start::tooth(fault, &self.window.turning, &self.window.counted_from),
-                    severity,
+                    severity: *self.simulated.fault_severities.get(number)?,
                     area_percent: (pairs.flat_map(|pair| damages_of_fault(&pair.damaged, number)))
                         .flat_map(|(_, damage)| damage.numbers("area_percent"))
                         .reduce(f64::max),
@@ -215,20 +183,22 @@ impl<'a> View<'a> {
                 })
             }
             FaultPlace::Spall { bearing, number } => {
-                let spall = spall(self.simulated, bearing, number)?;
+                let (_, rolling) = self.simulated.bearings.iter().find(|(other, _)| *other == bearing)?;
+                let sizes = *rolling.parts.spalls.get(number)?;
+                let order = rolling.parts.geometry.defect_orders().of_defect(sizes.place);
+                let bearing = self.simulated.scenario.bearings()[bearing].seat_name();
                 Some(RecordFault {
-                    kind: spall.sizes.place.kind(),
-                    wheel: None,
-                    tooth: None,
-                    severity: spall.sizes.severity,
-                    area_percent: None,
-                    spall: Some(spall),
+                    kind: sizes.place.kind(),
+                    severity: sizes.severity,
+                    spall: Some(RecordSpall { bearing, sizes, order }),
+                    ..RecordFault::default()
                 })
             }
         }
     }
 
-    fn empty(&self, content: &Content, drawn: DrawnRecord) -> Record {
+    fn empty(&self, drawn: DrawnRecord) -> Record {
+        let content = self.content;
         let places = FaultyBase::new(&content.base, &content.classes[drawn.class].faults).places;
         let turning = &self.window.turning;
         let starts_at_tooth = self.is_steady() && turning.enter_together;
@@ -264,10 +234,10 @@ impl<'a> View<'a> {
     }
 
     /// What was recorded of each channel: the signals of sensors that are not linear, else the motion of their places.
-    fn before_linear_sensors(&self, stages: &Stages, recorder: SignalRecorder) -> Vec<Vec<f32>> {
+    fn before_linear_sensors(&self, recorder: SignalRecorder) -> Vec<Vec<f32>> {
         recorder.channels_by(|channel, motion| match self.linear_sensor(channel) {
             Some(_) => motion,
-            None => stages.shown(channel, motion),
+            None => self.simulated.shown(channel, motion),
         })
     }
 
@@ -387,13 +357,12 @@ impl<'a> View<'a> {
     }
 
     /// The difference signal that is enhanced, without noise.
-    fn clean_difference(&self, signal: &[f32], content: &Content) -> Result<Vec<f64>, SignalError> {
-        if content.tuned.is_none() {
+    fn clean_difference(&self, signal: &[f32]) -> Result<Vec<f64>, SignalError> {
+        if self.content.tuned.is_none() {
             return Ok(Vec::new());
         }
-        let stages = self.simulated;
         // The same settings as those of the signals that the enhancement was tuned with.
-        let angular = DifferenceChain::angular_settings(stages.scenario.model);
+        let angular = DifferenceChain::angular_settings(self.simulated.scenario.model);
         let (_, record) = self.chain(&self.train())?.analyse(signal, 0, angular, MeanPart::Removed)?;
         Ok(record.parts.difference)
     }

@@ -23,6 +23,7 @@ use meshtone::{Simulation, Stages, StepJudgement};
 
 use crate::draw::DrawnRecord;
 use crate::plan::Content;
+use chain::View;
 
 /// The signals and values that are kept of one record.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -90,7 +91,7 @@ pub struct RecordWheel {
 }
 
 /// A fault of a record.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct RecordFault {
     /// Kind of damage: of teeth by its name in the scenario file, of a bearing `outer-race`, `inner-race` or `rolling-element`.
     pub kind: &'static str,
@@ -120,11 +121,12 @@ pub struct RecordSpall {
 
 /// The purpose of a simulation.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) enum Role {
-    /// It simulates the record itself.
-    Record(DrawnRecord, Window),
-    /// It simulates the record's gears without the faults.
-    HealthyTwin(DrawnRecord, Window),
+pub(crate) struct Role {
+    /// The record that it is for.
+    pub drawn: DrawnRecord,
+    pub window: Window,
+    /// Whether it simulates the record's gears without the faults, and not the record itself.
+    pub is_twin: bool,
 }
 
 /// Makes a record of each of many simulations.
@@ -155,15 +157,14 @@ impl<F: Fn(usize) -> Option<Role> + Sync> BatchKeep for KeepRecords<'_, F> {
     }
 
     fn keep(&self, index: usize, stages: Stages, recorder: ObservedRecorder) -> Self::Kept {
-        let record = match (self.role)(index).ok_or("it was not asked for")? {
-            Role::Record(drawn, window) => {
-                // The error is only estimated: simulating doubtful records again would triple the work.
-                let observation = recorder.observation(&stages, StepJudgement::Estimated);
-                chain::record(self.content, drawn, window, &stages, observation, recorder.into_signals())
-            }
-            Role::HealthyTwin(drawn, window) => {
-                chain::twin(self.content, drawn, window, &stages, recorder.into_signals()).map_err(Into::into)
-            }
+        let Role { drawn, window, is_twin } = (self.role)(index).ok_or("it was not asked for")?;
+        let view = View::new(self.content, window, &stages);
+        let record = if is_twin {
+            view.twin(drawn, recorder.into_signals()).map_err(Into::into)
+        } else {
+            // The error is only estimated: simulating doubtful records again would triple the work.
+            let observation = recorder.observation(&stages, StepJudgement::Estimated);
+            view.record_of_pair(drawn, observation, recorder.into_signals())
         };
         record.map(Box::new).map_err(|error| error.to_string())
     }
@@ -177,10 +178,8 @@ impl<F: Fn(usize) -> Option<Role> + Sync> KeepRecords<'_, F> {
     /// * `simulation` - with all its signals
     pub fn of_train(&self, index: usize, simulation: Simulation) -> Result<Box<Record>, String> {
         // A train has no twins: nothing of it is enhanced.
-        let Some(Role::Record(drawn, window)) = (self.role)(index) else {
-            return Err("it was not asked for".to_owned());
-        };
-        let record = chain::record_of_train(self.content, drawn, window, simulation);
+        let Role { drawn, window, .. } = (self.role)(index).ok_or("it was not asked for")?;
+        let record = View::new(self.content, window, &simulation.stages).record_of_train(drawn, &simulation);
         record.map(Box::new).map_err(|error| error.to_string())
     }
 }

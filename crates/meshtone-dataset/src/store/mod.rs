@@ -23,6 +23,7 @@ use crate::contents::WRONG_BYTES;
 use crate::digest::{Digest, Hashing};
 use crate::error::DatasetError;
 use crate::shard::{self, ReadShard, Wanted};
+use crate::verify::Check;
 use directory::Directory;
 #[cfg(feature = "objects")]
 use object::Objects;
@@ -196,14 +197,21 @@ impl Destination {
         self.write(name, |file| file.write_all(bytes))
     }
 
-    /// Reads a shard to its end and then some values of it.
+    /// Reads some columns of a shard, where its bytes are checked after it was read to its end.
     ///
     /// # Errors
     /// In words, what is wrong with it.
-    pub(crate) fn proven_shard(&self, name: &str, wanted: Wanted) -> Result<ReadShard, String> {
-        let proven = self.storage.open(name).and_then(shard::proven).map_err(|error| unreadable(&error))?;
-        proven.ok_or(WRONG_BYTES)?;
-        self.read_shard(name, wanted).map_err(|error| unreadable(&error))
+    pub(crate) fn checked_shard(
+        &self,
+        name: &str,
+        columns: &[&str],
+        check: Check,
+    ) -> Result<ReadShard, String> {
+        if check == Check::Bytes {
+            let proven = self.storage.open(name).and_then(shard::proven);
+            proven.map_err(|error| unreadable(&error))?.ok_or(WRONG_BYTES)?;
+        }
+        self.read_shard(name, Wanted::Columns(columns)).map_err(|error| unreadable(&error))
     }
 
     /// Copies a shard from another place if it is as it was written. Returns whether it is.
@@ -263,7 +271,7 @@ impl fmt::Display for Destination {
 }
 
 /// The problem of a file that cannot be read, in words.
-pub(crate) fn unreadable(error: &io::Error) -> String {
+fn unreadable(error: &io::Error) -> String {
     format!("it cannot be read: {error}")
 }
 
