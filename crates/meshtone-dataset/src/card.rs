@@ -20,20 +20,19 @@ pub(crate) fn card(set: &Finished) -> String {
 
 /// Writes what Hugging Face's `datasets` and its website read of a card: licence, title, tags, and the files of each split.
 fn front_matter(set: &Finished) -> String {
-    let (about, units_of_split) = (&set.plan.about, set.plan.content.units_of_split());
+    let about = &set.plan.about;
     let licence = match about.licence.as_str() {
         words if words.contains(char::is_whitespace) => format!("other\nlicense_name: {}", json!(words)),
         identifier => json!(identifier.to_lowercase()).to_string(),
     };
     // Names of splits are words there.
-    let files_of = |split: &str| {
+    let files_of = |(split, _): (&str, u64)| {
         format!("  - split: {:?}\n    path: {:?}\n", split.replace('-', "_"), set.shards.pattern(split))
     };
-    let splits = set.plan.content.splits.names_in(&units_of_split);
     format!(
         "---\nlicense: {licence}\npretty_name: {}\ntags: [vibration, gears, condition-monitoring, simulation]\nconfigs:\n- config_name: default\n  data_files:\n{}dataset_info:\n  features:\n{}---\n\n",
         json!(about.title),
-        splits.into_iter().map(files_of).collect::<String>(),
+        set.plan.content.units_of_split().into_iter().map(files_of).collect::<String>(),
         set.columns.iter().map(|column| feature(set, column)).collect::<String>()
     )
 }
@@ -101,10 +100,8 @@ fn head(set: &Finished) -> String {
 /// the splits that are unlike the training and the records that are missing.
 fn counts(set: &Finished) -> String {
     let (plan, contents) = (set.plan, set.contents);
-    let units_of_split = plan.content.units_of_split();
-    let splits = plan.content.splits.names_in(&units_of_split);
-    let row = |name: &str, number: &dyn Fn(&str) -> Option<u64>| {
-        let numbers: Vec<u64> = splits.iter().map(|split| number(split).unwrap_or(0)).collect();
+    let (splits, units): (Vec<&str>, Vec<u64>) = plan.content.units_of_split().into_iter().unzip();
+    let row = |name: &str, numbers: &[u64]| {
         let cells: Vec<String> = numbers.iter().map(u64::to_string).collect();
         format!("| {name} | {} | {} |\n", cells.join(" | "), numbers.iter().sum::<u64>())
     };
@@ -114,7 +111,9 @@ fn counts(set: &Finished) -> String {
         "---:|".repeat(splits.len())
     );
     for Class { label, .. } in &plan.content.classes {
-        text += &row(label, &|split| contents.counts.get(split)?.get(label).copied());
+        let count = |split: &&str| contents.counts.get(*split).and_then(|labels| labels.get(label));
+        text +=
+            &row(label, &splits.iter().map(|split| count(split).copied().unwrap_or(0)).collect::<Vec<_>>());
     }
     let [kind, _] = plan.content.base.nouns();
     let (divided, meaning) = match plan.content.splits.by {
@@ -134,7 +133,7 @@ fn counts(set: &Finished) -> String {
             ),
         ),
     };
-    text += &row(&format!("*{divided}s*"), &|split| units_of_split.get(split).copied());
+    text += &row(&format!("*{divided}s*"), &units);
     text += &format!("\n**Splits are by {divided}**: {meaning}.\n");
     for shift in &plan.content.splits.shifts {
         let when: Vec<String> = shift.when.iter().map(|condition| format!("`{condition}`")).collect();

@@ -37,8 +37,6 @@ pub(crate) fn metadata(set: &Finished, documents: &[Document]) -> String {
         "" => format!("{}, {SIMULATED}", about.title),
         description => description.to_owned(),
     };
-    let units_of_split = plan.content.units_of_split();
-    let splits = plan.content.splits.names_in(&units_of_split);
     let mut metadata = json!({
         "@context": serde_json::from_str::<Value>(CONTEXT).unwrap_or_default(),
         "@type": "sc:Dataset",
@@ -49,7 +47,7 @@ pub(crate) fn metadata(set: &Finished, documents: &[Document]) -> String {
         "version": about.version,
         "citeAs": citation(about),
         "distribution": distribution(shards, documents),
-        "recordSet": [of_splits(&splits), of_records(columns)],
+        "recordSet": [of_splits(&plan.content.units_of_split()), of_records(columns)],
     });
     let creator = about.creator.as_ref().map(|name| json!({ "@type": "sc:Organization", "name": name }));
     let doi = about.doi.as_ref().map(|doi| json!(format!("https://doi.org/{doi}")));
@@ -113,9 +111,9 @@ fn media_type(name: &str) -> &'static str {
 }
 
 /// The list of splits, which a record's split refers to.
-fn of_splits(splits: &[&str]) -> Value {
+fn of_splits(splits: &[(&str, u64)]) -> Value {
     let (name, url) = (format!("{SPLITS}/name"), format!("{SPLITS}/url"));
-    let data = splits.iter().map(|split| {
+    let data = splits.iter().map(|(split, _)| {
         let kind = match *split {
             "train" => "cr:TrainingSplit",
             "validation" => "cr:ValidationSplit",

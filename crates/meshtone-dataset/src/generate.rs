@@ -162,7 +162,7 @@ pub fn generate(
         let problem = format!("there is no part {} of {}", part.number, part.of);
         return Err(DatasetError::refused(problem, "parts are numbered from 1"));
     }
-    let sampler = Sampler::new(&plan.content).map_err(|error| manifest::plan_error(plan, error))?;
+    let sampler = Sampler::of_plan(plan)?;
     let shards = Shards::new(plan, &sampler);
     let was_complete = manifest::check_place(plan, &shards, to, &to.files()?, manifest::read(to)?.as_ref())?;
     // A data set that is called complete is examined all the same: a file may have been lost or damaged since.
@@ -291,15 +291,11 @@ impl Run<'_> {
         let records: u64 = missing.iter().map(|&shard| self.shards.len(shard)).sum();
         let stop = AtomicBool::new(false);
         let (sender, receiver) = sync_channel(WAITING);
-        let written = std::thread::scope(|scope| {
-            let writer = scope.spawn(|| self.write(missing, records, receiver, &stop));
+        std::thread::scope(|scope| {
+            let writer = scope.spawn(|| self.write(missing, records, receiver, &stop, generated));
             self.simulate(missing, sender, &stop);
             writer.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
-        });
-        (generated.failures, generated.warnings) = written?;
-        generated.written_shards = missing.len() as u64;
-        generated.written_records = records;
-        Ok(())
+        })
     }
 
     /// Simulates all records of some shards and sends them to the writer in their order.
@@ -364,14 +360,15 @@ impl Run<'_> {
         scenarios
     }
 
-    /// Writes shards as their records arrive. Returns the records that failed, and how many have which warning.
+    /// Writes shards as their records arrive.
     fn write(
         &self,
         missing: &[u64],
         records: u64,
         items: Receiver<Item>,
         stop: &AtomicBool,
-    ) -> Result<(Vec<FailedRecord>, WarningCounts), DatasetError> {
+        generated: &mut Generated,
+    ) -> Result<(), DatasetError> {
         let columns = shard::columns(self.plan);
         let mut done = 0;
         let mut next = || {
@@ -386,14 +383,15 @@ impl Run<'_> {
             }
             Some(item)
         };
-        let (mut failures, mut warnings) = (Vec::new(), WarningCounts::new());
         for &shard in missing {
             let written = self.write_shard(shard, &columns, &mut next);
             let (failed, doubtful) = written.inspect_err(|_| stop.store(true, Ordering::Relaxed))?;
-            failures.extend(failed);
-            add_warnings(&mut warnings, doubtful);
+            generated.failures.extend(failed);
+            add_warnings(&mut generated.warnings, doubtful);
+            generated.written_shards += 1;
+            generated.written_records += self.shards.len(shard);
         }
-        Ok((failures, warnings))
+        Ok(())
     }
 
     /// Writes a shard. Returns its records that failed, and how many have which warning.

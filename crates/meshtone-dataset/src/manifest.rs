@@ -1,6 +1,7 @@
 //! The manifest: it says what a data set is and whether it is complete.
 
-use meshtone_io::scenario_file::ReadScenarioError;
+use std::collections::BTreeMap;
+
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
@@ -227,7 +228,7 @@ pub(crate) fn complete(set: &Finished, documents: &[Document]) -> String {
     let mut manifest = head(plan, true);
     manifest["records_per_shard"] = json!(shards.records_per_shard);
     manifest["split_by"] = json!(plan.content.splits.by.name());
-    manifest["units_of_split"] = json!(plan.content.units_of_split());
+    manifest["units_of_split"] = json!(BTreeMap::from_iter(plan.content.units_of_split()));
     manifest["counts"] = json!(contents.counts);
     manifest["warnings"] = json!(contents.warnings);
     manifest["failures"] = contents.failures.values().map(|failed| json!(failed)).collect();
@@ -257,11 +258,4 @@ fn seal(before: &str) -> String {
 fn is_whole(text: &str) -> bool {
     let place = text.len().checked_sub(seal("").len()).filter(|&place| text.is_char_boundary(place));
     place.is_some_and(|place| text[place..] == seal(&text[..place]))
-}
-
-/// The error of a plan that was found after the plan had been read.
-pub(crate) fn plan_error(plan: &Plan, error: impl Into<meshtone_toml::TomlError>) -> DatasetError {
-    let path = plan.sources.first().cloned().unwrap_or_default();
-    let text = plan.files.first().map(|file| file.text.clone()).unwrap_or_default();
-    DatasetError::Plan(ReadScenarioError::Invalid { path, text, error: Box::new(error.into()) })
 }

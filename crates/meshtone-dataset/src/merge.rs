@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use meshtone_io::own_file::Claim;
-use meshtone_io::scenario_file::ReadScenarioError;
+use meshtone_io::scenario_file::ReadScenarioError::{Invalid, NotText, Unreadable};
 
 use crate::draw::Sampler;
 use crate::error::DatasetError;
@@ -38,7 +38,7 @@ pub fn merge(parts: &[Destination], to: &Destination, check: Check) -> Result<Ge
         || DatasetError::refused("there are no parts to merge", "name the directories of the parts");
     let first = parts.first().ok_or_else(nothing)?;
     let plan = plan_of(first)?;
-    let sampler = Sampler::new(&plan.content).map_err(|error| manifest::plan_error(&plan, error))?;
+    let sampler = Sampler::of_plan(&plan)?;
     let shards = Shards::new(&plan, &sampler);
     // The place is claimed before it is examined, so that it has to be examined only once.
     let claimed = if to.text(MANIFEST)?.is_some() { Some(claim(to)?) } else { None };
@@ -139,20 +139,13 @@ pub(crate) fn plan_of(place: &Destination) -> Result<Plan, DatasetError> {
         let name = path.file_name().map(|name| name.to_string_lossy());
         PathBuf::from(name.map_or_else(|| place.to_string(), |name| place.name_of(&name)))
     };
-    let mut plan = Plan::read_copy(&path).map_err(|error| with_path(error, named))?;
+    let mut plan = Plan::read_copy(&path).map_err(|mut error| {
+        let (Unreadable { path, .. } | NotText { path, .. } | Invalid { path, .. }) = &mut error;
+        *path = named(path);
+        error
+    })?;
     plan.sources.iter_mut().for_each(|source| *source = named(source));
     Ok(plan)
-}
-
-/// Changes the name of the file that an error is about.
-fn with_path(error: ReadScenarioError, named: impl Fn(&Path) -> PathBuf) -> ReadScenarioError {
-    use ReadScenarioError::{Invalid, NotText, Unreadable};
-
-    match error {
-        Unreadable { path, source } => Unreadable { path: named(&path), source },
-        NotText { path, line, byte } => NotText { path: named(&path), line, byte },
-        Invalid { path, text, error } => Invalid { path: named(&path), text, error },
-    }
 }
 
 #[cfg(test)]

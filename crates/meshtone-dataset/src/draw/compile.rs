@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use meshtone::scenario::{ScenarioNumber, split_key};
+use meshtone_io::scenario_file::ReadScenarioError;
 use meshtone_toml::{ReadResult, TomlError, nearest_name};
 
 use super::values::{SEVERITY, fault_of_severity};
@@ -10,8 +11,11 @@ use super::{
     CLASSES, FAULT_SEVERITY, NOISE_KEYS, ORDER, PATH_KEYS, SPLITS, Sampler, design_seed, is_of_plan,
     shift_key,
 };
+use crate::error::DatasetError;
 use crate::expression::{Condition, Expression, derived_names, underlying};
-use crate::plan::{Content, FaultyBase, Level, Rule, Severity, SplitBy, kinds, list_and_entry, refused};
+use crate::plan::{
+    Content, FaultyBase, Level, Plan, Rule, Severity, SplitBy, kinds, list_and_entry, refused,
+};
 
 /// Keys that cannot be varied, and why.
 const OWN: [(&str, &str); 3] = [
@@ -83,6 +87,15 @@ impl<'a> Sampler<'a> {
             class_seeds,
             constraints,
             shift_levels,
+        })
+    }
+
+    /// As [`Self::new`], of a plan that was read: an error is one of its file.
+    pub(crate) fn of_plan(plan: &'a Plan) -> Result<Self, DatasetError> {
+        Self::new(&plan.content).map_err(|error| {
+            let path = plan.sources.first().cloned().unwrap_or_default();
+            let text = plan.files.first().map(|file| file.text.clone()).unwrap_or_default();
+            DatasetError::Plan(ReadScenarioError::Invalid { path, text, error: Box::new(error) })
         })
     }
 }

@@ -112,6 +112,9 @@ impl DrawnRecord {
 
 /// Position of a record among the records of its class.
 struct UnitPosition {
+    class: usize,
+    /// Number of the record in its class.
+    number: u64,
     unit: u64,
     mounting: u64,
     /// Position among the class's records of this unit, from 0.
@@ -147,9 +150,9 @@ impl Sampler<'_> {
     /// # Errors
     /// No values were found that meet the constraints: about the key in the plan of the condition that was broken most often.
     pub fn record(&self, index: u64) -> ReadResult<DrawnRecord> {
-        let (class, number) = self.class_and_number(index);
+        let place = self.place(index);
+        let (class, number) = (place.class, place.number);
         let [design_seed, unit_seed] = self.class_seeds[class];
-        let place = self.place(class, number, unit_seed);
         let split = self.split_of(place.unit, place.mounting);
         let mut before = self.mounting_values(&place, split)?;
         let growth = self.content.classes[class].growth.as_ref();
@@ -178,9 +181,7 @@ impl Sampler<'_> {
     /// # Arguments
     /// * `index` - number of the record, below [`Self::records`]
     pub fn split(&self, index: u64) -> usize {
-        let (class, number) = self.class_and_number(index);
-        let [_, unit_seed] = self.class_seeds[class];
-        let place = self.place(class, number, unit_seed);
+        let place = self.place(index);
         self.split_of(place.unit, place.mounting)
     }
 
@@ -192,21 +193,12 @@ impl Sampler<'_> {
         self.content.splits.names()[split]
     }
 
-    /// The class of a record, and its number in the class.
-    fn class_and_number(&self, index: u64) -> (usize, u64) {
-        let place = permuted(index, self.records(), self.order_seeds[0]);
-        let class = self.ends.iter().position(|&end| place < end).unwrap_or(0);
-        let start = class.checked_sub(1).map_or(0, |before| self.ends[before]);
-        (class, place - start)
-    }
-
     /// The position of a record among the records of its class.
-    ///
-    /// # Arguments
-    /// * `class` - its class
-    /// * `number` - its number in the class
-    /// * `seed` - of the class's units
-    fn place(&self, class: usize, number: u64, seed: u64) -> UnitPosition {
+    fn place(&self, index: u64) -> UnitPosition {
+        let of_all = permuted(index, self.records(), self.order_seeds[0]);
+        let class = self.ends.iter().position(|&end| of_all < end).unwrap_or(0);
+        let number = of_all - class.checked_sub(1).map_or(0, |before| self.ends[before]);
+        let [_, seed] = self.class_seeds[class];
         let Content { units, mountings, .. } = *self.content;
         let count = self.content.classes[class].count;
         // Units are shuffled: points of the design at equal distances in its order lie near each other.
@@ -221,7 +213,7 @@ impl Sampler<'_> {
         let turns = if self.content.classes[class].growth.is_some() { 0 } else { of_unit };
         let turned = keyed(seed, Purpose::DatasetTurn, unit);
         let mounting = unit * mountings + (turned % mountings + turns) % mountings;
-        UnitPosition { unit, mounting, of_unit, records_of_unit }
+        UnitPosition { class, number, unit, mounting, of_unit, records_of_unit }
     }
 
     /// The scenario of a record.

@@ -62,20 +62,18 @@ pub(super) fn check(content: &Content, root: &TomlTable<'_>) -> ReadResult<()> {
 
 /// Refuses wheels whose deviations or seed are given: every unit has wheels of its own.
 fn refuse_given_wheels(base: &Scenario) -> ReadResult<()> {
-    const DRAWN: &str = "units draw their wheels by din_grade or iso_class";
-    const OWN: &str = "every unit has wheels of its own";
-    let wheels = base.wheels.iter().enumerate().map(|(number, wheel)| {
-        (wheel.profile_errors_mm.is_some(), base.key_of_quality(number, "errors_file"), DRAWN)
-    });
-    let seed = (base.wheels_seed.is_some(), base.wheels_seed_key().to_owned(), OWN);
-    let given: Vec<(bool, String, &str)> = wheels.chain([seed]).collect();
-    match given.into_iter().find(|(is_given, ..)| *is_given) {
-        Some((_, key, why)) => {
-            let problem = format!("cannot be given: {why}");
-            Err(refused(format!("scenario.{key}"), problem, "remove it from the base scenario"))
+    let (key, why) = match base.wheels.iter().position(|wheel| wheel.profile_errors_mm.is_some()) {
+        Some(number) => {
+            let key = base.key_of_quality(number, "errors_file");
+            (key, "units draw their wheels by din_grade or iso_class")
         }
-        None => Ok(()),
-    }
+        None if base.wheels_seed.is_some() => {
+            (base.wheels_seed_key().to_owned(), "every unit has wheels of its own")
+        }
+        None => return Ok(()),
+    };
+    let problem = format!("cannot be given: {why}");
+    Err(refused(format!("scenario.{key}"), problem, "remove it from the base scenario"))
 }
 
 /// Checks that no two columns of the data set have the same name.

@@ -152,9 +152,7 @@ impl Growth {
             severity: self.severity_at(part, seed),
         }
     }
-}
 
-impl Growth {
     /// (-) Part of the life, at most `latest`, at which a severity is reached: by bisection, because pits grow in steps.
     fn part_at(&self, severity: f64, latest: f64, seed: u64) -> f64 {
         let [mut before, mut after] = [0.0, latest];

@@ -15,7 +15,6 @@ mod split;
 mod variation;
 mod wheel;
 
-use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use meshtone::scenario::{GearboxRig, Scenario};
@@ -190,11 +189,10 @@ impl Content {
         self.units.saturating_mul(self.mountings)
     }
 
-    /// Number of units, or mountings, in each split that has any.
-    pub(crate) fn units_of_split(&self) -> BTreeMap<String, u64> {
+    /// The splits that have any units, or mountings, and how many.
+    pub(crate) fn units_of_split(&self) -> Vec<(&str, u64)> {
         let counts = self.splits.counts(self.divided());
-        let names = self.splits.names().into_iter().map(str::to_owned);
-        names.zip(counts).filter(|(_, units)| *units > 0).collect()
+        self.splits.names().into_iter().zip(counts).filter(|(_, units)| *units > 0).collect()
     }
 
     /// Number of what is divided into splits: units, or mountings.

@@ -1,7 +1,5 @@
 //! Splits: how units are divided for training, validation and test.
 
-use std::collections::BTreeMap;
-
 use crate::expression::Condition;
 use crate::sampling::permuted;
 
@@ -53,11 +51,6 @@ impl Splits {
     pub fn names(&self) -> Vec<&str> {
         let shifts = self.shifts.iter().map(|shift| shift.name.as_str());
         Self::ALIKE.into_iter().chain(shifts).collect()
-    }
-
-    /// The names of those splits that have any units, or mountings.
-    pub(crate) fn names_in(&self, units_of_split: &BTreeMap<String, u64>) -> Vec<&str> {
-        self.names().into_iter().filter(|name| units_of_split.contains_key(*name)).collect()
     }
 
     /// (-) Part of the units in each split.

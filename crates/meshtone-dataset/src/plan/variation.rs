@@ -96,12 +96,9 @@ fn one(key: &str, level: Level, distribution: Distribution) -> Rule {
 /// A grade, the next finer one and the next coarser one; itself instead of one that the key does not allow, and of 0, which is no grade.
 fn neighbours(base: &Scenario, grade: &ScenarioNumber) -> Distribution {
     let is_allowed = |value: f64| value >= 1.0 && base.with_numbers(&[(&grade.key, value)]).is_ok();
-    let rows: Vec<Vec<f64>> = [-1.0, 0.0, 1.0]
-        .map(|step| grade.value + step)
-        .map(|value| vec![if is_allowed(value) { value } else { grade.value }])
-        .to_vec();
-    let weights = vec![1.0; rows.len()];
-    Distribution::Choice { rows, weights }
+    let values = [-1.0, 0.0, 1.0].map(|step| grade.value + step);
+    let row = |value| vec![if is_allowed(value) { value } else { grade.value }];
+    Distribution::Choice { rows: values.map(row).to_vec(), weights: vec![1.0; values.len()] }
 }
 
 #[cfg(test)]

@@ -1,7 +1,9 @@
 //! Records of recordings: the same channels, windows and columns as those of a data set.
 
+use std::error::Error;
+
 use meshtone::scenario::Scenario;
-use meshtone::signal::{AntiAliasing, Edge, GearTrain, ShaftPhase, SignalError};
+use meshtone::signal::{AntiAliasing, Edge, GearTrain, ShaftPhase};
 
 use super::kept::KeptChain;
 use super::{Record, RecordWheel};
@@ -54,10 +56,9 @@ pub(crate) fn records(
     recording: &MachineRecording<'_>,
     number: u64,
     first: u64,
-) -> Result<Vec<Record>, String> {
+) -> Result<Vec<Record>, Box<dyn Error>> {
     let keep = &content.keep;
-    let in_words = |error: SignalError| error.to_string();
-    let train = GearTrain::of_scenario(recording.machine).map_err(|error| error.to_string())?;
+    let train = GearTrain::of_scenario(recording.machine)?;
     let wheels: Vec<usize> =
         keep.wheel.all().iter().map(|wheel| wheel_number(&train, wheel)).collect::<Result<_, _>>()?;
     let reference = train.wheels[wheels[0]].shaft;
@@ -65,9 +66,10 @@ pub(crate) fn records(
     let phase = carried(recording, &train, reference, keep.sampling_rate_hz)?;
     let (operation, rate_hz) = (&recording.machine.operation, keep.sampling_rate_hz);
     let ratio = |shaft: usize| train.speed_ratio(shaft, reference).value();
-    let windows = windows(&phase, &length(content, recording.machine, ratio(train.input())));
+    let length = length(content, recording.machine, ratio(train.input()));
+    let windows = windows(&phase, &length);
     if windows.is_empty() {
-        let needed = match length(content, recording.machine, ratio(train.input())) {
+        let needed = match length {
             Length::Revolutions(revolutions) => format!("{revolutions:.3} revolutions and a sample more"),
             Length::Samples(samples) => {
                 format!("{:.3} s from its first whole revolution on", samples as f64 / rate_hz)
@@ -78,7 +80,8 @@ pub(crate) fn records(
             phase.span_rev(),
             keep.wheel.all()[0],
             phase.revolutions.len() as f64 / rate_hz
-        ));
+        )
+        .into());
     }
     let record = |(window, (start_rev, from, to)): (u64, (f64, usize, usize))| {
         let angles = &phase.revolutions[from - phase.first_sample..to - phase.first_sample];
@@ -86,8 +89,9 @@ pub(crate) fn records(
             let relative = angles.iter().map(|angle| (angle - start_rev) * ratio(shaft)).collect();
             ShaftPhase::new(0, relative)
         };
-        let phases = wheels.iter().map(|&wheel| turned(train.wheels[wheel].shaft)).collect::<Result<_, _>>();
-        let chain = KeptChain { keep, train: &train, phases: phases.map_err(in_words)? };
+        let phases =
+            wheels.iter().map(|&wheel| turned(train.wheels[wheel].shaft)).collect::<Result<_, _>>()?;
+        let chain = KeptChain { keep, train: &train, phases };
         let speed_hz = (angles[angles.len() - 1] - angles[0]) * rate_hz / (angles.len() - 1) as f64;
         let values = recording.machine.numbers().into_iter().map(|number| (number.key, number.value));
         let mut record = Record {
@@ -111,7 +115,7 @@ pub(crate) fn records(
             ..Record::default()
         };
         let part = |channel: &Vec<f32>| channel.get(from..to).map(<[f32]>::to_vec).unwrap_or_default();
-        chain.fill(&mut record, analysed, channels.iter().map(part).collect()).map_err(in_words)?;
+        chain.fill(&mut record, analysed, channels.iter().map(part).collect())?;
         Ok(record)
     };
     (0..).zip(windows).map(record).collect()
@@ -138,7 +142,7 @@ fn carried(
     train: &GearTrain,
     shaft: usize,
     to_hz: f64,
-) -> Result<ShaftPhase, String> {
+) -> Result<ShaftPhase, Box<dyn Error>> {
     let names: Vec<&str> = train.shafts.iter().map(|shaft| shaft.name.as_str()).collect();
     let known = match recording.shaft {
         None => train.input(),
@@ -147,11 +151,11 @@ fn carried(
             .position(|known| *known == name)
             .ok_or_else(|| format!("the machine has no shaft {name:?}, but {}", names.join(", ")))?,
     };
-    let phase = train.carried(recording.phase, known, shaft).map_err(|error| error.to_string())?;
+    let phase = train.carried(recording.phase, known, shaft)?;
     let samples = recording.channels.iter().map(|(_, samples)| samples.len()).min().unwrap_or(0);
     let (first, end) = (phase.first_sample, phase.first_sample + phase.revolutions.len());
     if end > samples {
-        return Err(format!("it has {samples} samples, but its phase is known up to sample {end}"));
+        return Err(format!("it has {samples} samples, but its phase is known up to sample {end}").into());
     }
     let step = recording.sampling_rate_hz / to_hz;
     let from = (first as f64 / step).ceil() as usize;
@@ -162,7 +166,7 @@ fn carried(
         let [a, b] = [phase.revolutions[before], phase.revolutions[before + 1]];
         a + (place - before as f64) * (b - a)
     };
-    ShaftPhase::new(from, (from..=to).map(angle).collect()).map_err(|error| error.to_string())
+    Ok(ShaftPhase::new(from, (from..=to).map(angle).collect())?)
 }
 
 /// How long a record of the data set is.

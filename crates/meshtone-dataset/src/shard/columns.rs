@@ -1,7 +1,7 @@
 //! The columns of a data set: names, units, meanings, and the cells of each record.
 
 use meshtone::scenario::{DefectPlace, Scenario, WheelName, split_key};
-use meshtone::signal::Indicators;
+use meshtone::signal::{IndicatorValue, Indicators};
 use meshtone_io::table::{CellType, Cells, TableColumn};
 use meshtone_plot::without_unit;
 
@@ -393,7 +393,7 @@ fn of_indicators(keep: &Keep, number: usize) -> Vec<Column> {
         AveragedWheels::One(_) => &PREVIEWED_INDICATORS[..],
         AveragedWheels::Each(_) => &PREVIEWED_OF_SEVERAL,
     };
-    let of_indicator = |(name, unit): (String, String)| {
+    let of_indicator = |IndicatorValue { name, unit, .. }: IndicatorValue| {
         let column = if unit == "g" { format!("{prefix}{name}_g") } else { format!("{prefix}{name}") };
         let topic = Topic::Indicator { is_previewed: previewed.contains(&name.as_str()) };
         let meaning = format!("indicator {name} of the analysed channel over the {words}'s revolutions");
@@ -402,8 +402,7 @@ fn of_indicators(keep: &Keep, number: usize) -> Vec<Column> {
         };
         Column::float64(&column, &unit, value).about(topic).of_recording().nullable().meaning(meaning)
     };
-    let all = Indicators::default().table("g").into_iter();
-    all.map(|indicator| of_indicator((indicator.name, indicator.unit))).collect()
+    Indicators::default().table("g").into_iter().map(of_indicator).collect()
 }
 
 /// Average and difference signal over a revolution of one of the averaged wheels.

@@ -163,11 +163,12 @@ impl Destination {
 
     /// The digest of a file.
     pub(crate) fn digest(&self, name: &str) -> Result<Digest, DatasetError> {
-        let mut hashing = Hashing::new(io::sink());
-        let mut reader = self.storage.open(name).map_err(DatasetError::read(self.storage.name_of(name)))?;
-        let read = io::copy(&mut BufReader::with_capacity(READ_BYTES, &mut reader), &mut hashing);
-        read.map_err(DatasetError::read(self.storage.name_of(name)))?;
-        Ok(hashing.digest())
+        let read = self.storage.open(name).and_then(|reader| {
+            let mut hashing = Hashing::new(io::sink());
+            io::copy(&mut BufReader::with_capacity(READ_BYTES, reader), &mut hashing)?;
+            Ok(hashing.digest())
+        });
+        read.map_err(DatasetError::read(self.storage.name_of(name)))
     }
 
     /// Writes a file that appears whole or not at all.
