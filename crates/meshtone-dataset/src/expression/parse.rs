@@ -22,7 +22,8 @@ pub(super) fn expression(text: &str) -> Result<Node, String> {
 pub(super) fn condition(text: &str) -> Result<(Node, &'static str, Node), String> {
     let mut reader = Reader::new(text)?;
     let left = reader.operation(0)?;
-    let comparison = reader.comparison()?;
+    let found = COMPARISONS.into_iter().find(|symbol| reader.take(symbol));
+    let comparison = found.ok_or_else(|| reader.unexpected("<, <=, >, >=, == or !="))?;
     let right = reader.operation(0)?;
     reader.end()?;
     Ok((left, comparison, right))
@@ -63,11 +64,6 @@ impl<'a> Reader<'a> {
         }
         let found: String = self.rest.chars().take(20).collect();
         format!("has `{found}` where {wanted} is expected")
-    }
-
-    fn comparison(&mut self) -> Result<&'static str, String> {
-        let found = COMPARISONS.into_iter().find(|symbol| self.take(symbol));
-        found.ok_or_else(|| self.unexpected("<, <=, >, >=, == or !="))
     }
 
     /// Reads operations of a precedence and of all that bind more.

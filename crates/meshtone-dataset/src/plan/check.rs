@@ -90,8 +90,6 @@ pub(super) fn unique_columns(plan: &Plan) -> ReadResult<()> {
 struct Tried {
     /// The first records.
     records: Vec<DrawnRecord>,
-    /// How many of them were made.
-    made: usize,
     /// Whether one of them can be simulated, or why the first one cannot; none where none was made.
     simulated: Option<ReadResult<()>>,
 }
@@ -106,16 +104,21 @@ pub(super) fn first_records(plan: &Plan) -> ReadResult<()> {
         let record = sampler.record(index).map_err(|error| error.with_help(help))?;
         refuse_severity(content, &record)?;
         let class = &mut tried[record.class];
-        if class.made < MADE && !matches!(class.simulated, Some(Ok(()))) {
-            class.made += 1;
+        if class.records.len() < MADE && !matches!(class.simulated, Some(Ok(()))) {
             // A key of the plan is where it is mended; one of a record's scenario may be drawn, or written in another file.
             let of_class = |error: ScenarioError| {
                 let problem = error.to_string();
                 with_help_of(TomlError::new(format!("class[{}]", record.class), "", problem), error)
             };
             let made = sampler.scenario(&record).and_then(|scenario| {
-                refuse_ignored(&scenario, &record.values)?;
-                Ok(scenario)
+                // The key would be a label without effect.
+                let is_varied = |warning: &ScenarioWarning| {
+                    record.values.iter().any(|(key, _)| key.starts_with(&warning.key))
+                };
+                match scenario.ignored_by_model().into_iter().find(is_varied) {
+                    Some(ignored) => Err(TomlError::new(ignored.key, "", ignored.message)),
+                    None => Ok(scenario),
+                }
             });
             let result = made.map_err(of_class).and_then(|scenario| {
                 refuse_length(content, &scenario)?;
@@ -398,12 +401,4 @@ fn refuse_length(content: &Content, scenario: &Scenario) -> ReadResult<()> {
         return Err(TomlError::new(key, value.to_string(), problem).with_help(help));
     }
     Ok(())
-}
-
-/// Refuses a varied key that the model ignores: it would be a label without effect.
-fn refuse_ignored(scenario: &Scenario, values: &[(String, f64)]) -> ReadResult<()> {
-    let mut ignored = scenario.ignored_by_model().into_iter();
-    let is_varied = |warning: &ScenarioWarning| values.iter().any(|(key, _)| key.starts_with(&warning.key));
-    let refused = ignored.find(is_varied).map(|warning| TomlError::new(warning.key, "", warning.message));
-    refused.map_or(Ok(()), Err)
 }

@@ -20,13 +20,6 @@ pub struct Class {
     pub growth: Option<Growth>,
 }
 
-impl Class {
-    /// Returns whether its records have a spall of a bearing.
-    pub(crate) fn has_damaged_bearing(&self) -> bool {
-        self.faults.iter().any(|fault| fault.teeth().is_none())
-    }
-}
-
 /// The kinds of some faults, in their order; none of a healthy pair or gearbox.
 pub(crate) fn kinds(faults: &[ClassFault]) -> Option<String> {
     let kinds: Vec<_> = faults.iter().map(ClassFault::kind).collect();

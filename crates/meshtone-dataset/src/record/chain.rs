@@ -151,7 +151,7 @@ impl<'a> View<'a> {
                 noise::add(&record.drawn, background, number as u64, rate_hz, channel)?;
             }
         }
-        self.chain(&self.train())?.fill(&mut record, analysed, channels)?;
+        self.chain()?.fill(&mut record, analysed, channels)?;
         Ok(record)
     }
 
@@ -336,21 +336,14 @@ impl<'a> View<'a> {
         (wheel.first_pitch - self.window.counted_from[number] as f64) / f64::from(wheel.teeth)
     }
 
-    /// The machine, with the place of the analysed channel's sensor, and the wheels of planetary sets counted from their first tooth of the record.
-    fn train(&self) -> GearTrain {
+    /// The chain that makes a record of the channels: of the machine with the place of the analysed channel's sensor, and with the wheels of
+    /// planetary sets counted from their first tooth of the record.
+    fn chain(&self) -> Result<KeptChain<'_>, SignalError> {
         let scenario = &self.simulated.scenario;
         let mut train = GearTrain::of_stages(self.simulated).at_sensor(scenario, &self.keep.analysed.name());
         for (number, wheel) in train.wheels.iter_mut().enumerate().skip(scenario.own_wheels()) {
             wheel.start_rev = self.start_rev(number);
         }
-        train
-    }
-
-    /// The chain that makes a record of the channels.
-    ///
-    /// # Arguments
-    /// * `train` - the machine
-    fn chain<'t>(&'t self, train: &'t GearTrain) -> Result<KeptChain<'t>, SignalError> {
         let wheels = self.keep.wheel.all().iter();
         let phases = wheels.map(|wheel| self.phase(wheel, self.samples())).collect::<Result<_, _>>()?;
         Ok(KeptChain { keep: self.keep, train, phases })
@@ -363,7 +356,7 @@ impl<'a> View<'a> {
         }
         // The same settings as those of the signals that the enhancement was tuned with.
         let angular = DifferenceChain::angular_settings(self.simulated.scenario.model);
-        let (_, record) = self.chain(&self.train())?.analyse(signal, 0, angular, MeanPart::Removed)?;
+        let (_, record) = self.chain()?.analyse(signal, 0, angular, MeanPart::Removed)?;
         Ok(record.parts.difference)
     }
 }

@@ -14,7 +14,7 @@ pub(super) struct KeptChain<'a> {
     /// What is kept.
     pub keep: &'a Keep,
     /// The machine by its tooth counts.
-    pub train: &'a GearTrain,
+    pub train: GearTrain,
     /// Phases of the shafts of the averaged wheels, at the samples of the channels.
     pub phases: Vec<ShaftPhase>,
 }
@@ -100,7 +100,7 @@ impl KeptChain<'_> {
         };
         let (signal, sampling_rate_hz) = (double(signal), self.keep.sampling_rate_hz);
         let recording =
-            TrainRecording { signal: &signal, sampling_rate_hz, train: self.train, turning: &turning };
+            TrainRecording { signal: &signal, sampling_rate_hz, train: &self.train, turning: &turning };
         let settings = TrainSettings { angular, separation, revolutions: None };
         let angular = recording.angular(number, &settings.angular)?;
         let records = recording.process_wheel(number, &angular, &settings)?.records;

@@ -91,7 +91,7 @@ pub(crate) fn records(
         };
         let phases =
             wheels.iter().map(|&wheel| turned(train.wheels[wheel].shaft)).collect::<Result<_, _>>()?;
-        let chain = KeptChain { keep, train: &train, phases };
+        let chain = KeptChain { keep, train: train.clone(), phases };
         let speed_hz = (angles[angles.len() - 1] - angles[0]) * rate_hz / (angles.len() - 1) as f64;
         let values = recording.machine.numbers().into_iter().map(|number| (number.key, number.value));
         let mut record = Record {

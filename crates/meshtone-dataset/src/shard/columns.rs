@@ -10,7 +10,7 @@ use crate::plan::{
     AveragedWheels, Class, ClassFault, Content, Keep, OverAngle, Plan, Rule, column_part, list_and_entry,
     wheel_words,
 };
-use crate::record::{Record, RecordSpall};
+use crate::record::{Record, RecordAverage, RecordSpall};
 
 /// Name of the column of warnings' codes.
 pub(crate) const WARNINGS: &str = "warnings";
@@ -51,10 +51,7 @@ pub(crate) enum Topic {
     /// The value of a key that a rule varies.
     Key(String),
     /// An indicator, and whether a preview shows it.
-    Indicator {
-        /// Whether it does.
-        is_previewed: bool,
-    },
+    Indicator(bool),
     /// A raw channel.
     Channel,
     /// A signal over one revolution.
@@ -134,7 +131,7 @@ impl Column {
 
     /// Returns whether the column holds one of the indicators that a preview shows.
     pub fn is_previewed_indicator(&self) -> bool {
-        self.topic == Topic::Indicator { is_previewed: true }
+        self.topic == Topic::Indicator(true)
     }
 
     /// Returns whether a preview shows the column, unless all records have the same value.
@@ -207,8 +204,7 @@ pub(crate) fn columns(plan: &Plan) -> Vec<Column> {
 
 /// Lists the columns of what a record is, of its faults and of its machine.
 ///
-/// A class may have several faults, and a record of a class with fewer has no values in the columns of the others. The pits' area has a
-/// column only where some class has pits in that place.
+/// They begin with what every data set has. Those of the machine, at the end, are other ones for a pair than for a gearbox.
 fn of_record(content: &Content) -> Vec<Column> {
     let [unit, _] = content.base.nouns();
     let splits: Vec<String> = content.splits.names().into_iter().map(str::to_owned).collect();
@@ -234,29 +230,7 @@ fn of_record(content: &Content) -> Vec<Column> {
     ];
     // All data sets have the columns of one fault, even if every class is healthy.
     let most_faults = content.classes.iter().map(|class| class.faults.len()).max().unwrap_or(0);
-    let wheels = content.base.wheel_names();
-    for number in 0..most_faults.max(1) {
-        let any = |is: &dyn Fn(&ClassFault) -> bool| {
-            content.classes.iter().any(|class| class.faults.get(number).is_some_and(is))
-        };
-        let is_of_bearing = |fault: &ClassFault| fault.teeth().is_none();
-        let [kind, wheel, tooth, severity] = of_fault(number, &wheels, any(&is_of_bearing));
-        columns.push(kind);
-        if any(&|fault| fault.teeth().is_some()) || !any(&is_of_bearing) {
-            columns.extend([wheel, tooth]);
-        }
-        columns.push(severity);
-        if any(&is_of_bearing) {
-            columns.extend(of_spall(number));
-        }
-        let has_area = |fault: &ClassFault| fault.teeth().is_some_and(|of| of.damage.has_area());
-        if any(&has_area) {
-            let name = format!("{}_area_percent", name_in_list("fault", number));
-            let column = Column::float64(&name, "%", move |r| r.faults.get(number)?.area_percent);
-            let meaning = "part of the flank's contact part that the pits take, of the worst tooth";
-            columns.push(column.nullable().meaning(meaning));
-        }
-    }
+    columns.extend((0..most_faults.max(1)).flat_map(|number| of_fault(content, number)));
     columns.extend([
         Column::int64("seed", |r| r.drawn.seed).meaning("seed of the record's noise and fluctuations"),
         Column::int64("wheels_seed", |r| r.drawn.wheels_seed).meaning("seed of the unit's profile errors"),
@@ -369,8 +343,8 @@ fn of_simulation(base: &Scenario) -> Vec<Column> {
 /// # Arguments
 /// * `classes` - of the plan
 fn of_run(classes: &[Class]) -> [Column; 3] {
-    let mut of_bearing = classes.iter().filter(|class| class.growth.is_some() && class.has_damaged_bearing());
-    let part = if of_bearing.next().is_some() { "wheel or bearing" } else { "wheel" };
+    let mut growing = classes.iter().filter(|class| class.growth.is_some()).flat_map(|class| &class.faults);
+    let part = if growing.any(is_of_bearing) { "wheel or bearing" } else { "wheel" };
     let left = format!(
         "turns of the damaged {part} to failure; where `censored` is 1 to the end of the run, at least so many were left"
     );
@@ -395,7 +369,7 @@ fn of_indicators(keep: &Keep, number: usize) -> Vec<Column> {
     };
     let of_indicator = |IndicatorValue { name, unit, .. }: IndicatorValue| {
         let column = if unit == "g" { format!("{prefix}{name}_g") } else { format!("{prefix}{name}") };
-        let topic = Topic::Indicator { is_previewed: previewed.contains(&name.as_str()) };
+        let topic = Topic::Indicator(previewed.contains(&name.as_str()));
         let meaning = format!("indicator {name} of the analysed channel over the {words}'s revolutions");
         let value = move |r: &Record| {
             r.averages.get(number)?.indicators.iter().find(|value| value.name == name)?.value
@@ -413,25 +387,18 @@ fn of_revolution(keep: &Keep, number: usize) -> Vec<Column> {
         "over one revolution of the {}, at equal angles from where its tooth 1 comes into contact",
         wheel_words(wheel)
     );
-    let mut columns = Vec::new();
-    if keep.average {
-        let average = Column::signal(&format!("{prefix}average_g"), "g", move |r| {
-            r.averages.get(number).map_or(&[], |of| &of.average)
-        });
-        columns.push(average.meaning(format!("synchronous average {turn}")));
-    }
-    if keep.difference {
-        let difference = Column::signal(&format!("{prefix}difference_g"), "g", move |r| {
-            r.averages.get(number).map_or(&[], |of| &of.difference)
-        });
-        columns.push(difference.meaning(format!("difference signal {turn}")));
-    }
-    columns
+    let signal = |name: &str, words: &str, value: fn(&RecordAverage) -> &[f32]| {
+        let name = format!("{prefix}{name}_g");
+        let column = Column::signal(&name, "g", move |r| r.averages.get(number).map_or(&[], value));
+        column.meaning(format!("{words} {turn}"))
+    };
+    let average = keep.average.then(|| signal("average", "synchronous average", |of| &of.average));
+    let difference = keep.difference.then(|| signal("difference", "difference signal", |of| &of.difference));
+    average.into_iter().chain(difference).collect()
 }
 
 /// Bearing and sizes of a spall.
-fn of_spall(number: usize) -> [Column; 5] {
-    let named = |last: &str| format!("{}_{last}", name_in_list("fault", number));
+fn of_spall(number: usize, named: impl Fn(&str) -> String) -> [Column; 5] {
     let spall = move |r: &Record| r.faults.get(number)?.spall.clone();
     let size = |last: &str, unit: &str, value: fn(&RecordSpall) -> Option<f64>| {
         Column::float64(&named(last), unit, move |r| value(&spall(r)?))
@@ -451,16 +418,23 @@ fn of_spall(number: usize) -> [Column; 5] {
             "order of the spall's first line over the revolutions of the bearing's shaft, without slip: BPFO, BPFI or twice BSF",
         ),
     ]
-    .map(Column::nullable)
 }
 
-/// Kind, place and severity of a fault.
+fn is_of_bearing(fault: &ClassFault) -> bool {
+    fault.teeth().is_none()
+}
+
+/// Kind, place, severity and sizes of a fault, as far as some class has them.
+///
+/// A class may have several faults, and a record of a class with fewer has no values in the columns of the others. The pits' area has a
+/// column only where some class has pits in that place.
 ///
 /// # Arguments
+/// * `content` - of the plan
 /// * `number` - of the fault in its class, from 0
-/// * `wheels` - of the machine
-/// * `with_bearings` - whether some class has a spall as this fault
-fn of_fault(number: usize, wheels: &[&str], with_bearings: bool) -> [Column; 4] {
+fn of_fault(content: &Content, number: usize) -> Vec<Column> {
+    let faults = || content.classes.iter().filter_map(|class| class.faults.get(number));
+    let with_bearings = faults().any(is_of_bearing);
     let (of_kind, of_severity) = match with_bearings {
         true => (
             ", of a bearing outer-race, inner-race or rolling-element",
@@ -469,22 +443,33 @@ fn of_fault(number: usize, wheels: &[&str], with_bearings: bool) -> [Column; 4] 
         false => ("", ""),
     };
     let named = |last: &str| format!("{}_{last}", name_in_list("fault", number));
-    [
-        Column::text(&named("kind"), move |r| Some(r.faults.get(number)?.kind.to_owned()))
-            .meaning(format!("kind of damage{of_kind}")),
-        Column::text(&named("wheel"), move |r| r.faults.get(number)?.wheel.clone())
-            .meaning(format!("the damaged wheel: {}", wheels.join(" or "))),
-        Column::int32(&named("tooth"), move |r| r.faults.get(number)?.tooth).meaning(
-            "number of the damaged tooth, from 1, in the order in which its wheel's teeth come into contact from the \
-             start of the record on, null where it is several; in the plan and the scenario teeth are counted from where \
-             the first two meet",
-        ),
-        Column::float64(&named("severity"), "-", move |r| Some(r.faults.get(number)?.severity)).meaning(format!(
-            "severity of the damage, from 0, none, to 1, the largest that the tooth allows; each kind's \
-             scale is in the guide{of_severity}"
-        )),
-    ]
-    .map(Column::nullable)
+    let kind = Column::text(&named("kind"), move |r| Some(r.faults.get(number)?.kind.to_owned()));
+    let mut columns = vec![kind.meaning(format!("kind of damage{of_kind}"))];
+    if !with_bearings || !faults().all(is_of_bearing) {
+        let wheels = content.base.wheel_names().join(" or ");
+        columns.extend([
+            Column::text(&named("wheel"), move |r| r.faults.get(number)?.wheel.clone())
+                .meaning(format!("the damaged wheel: {wheels}")),
+            Column::int32(&named("tooth"), move |r| r.faults.get(number)?.tooth).meaning(
+                "number of the damaged tooth, from 1, in the order in which its wheel's teeth come into contact from the \
+                 start of the record on, null where it is several; in the plan and the scenario teeth are counted from where \
+                 the first two meet",
+            ),
+        ]);
+    }
+    let severity = Column::float64(&named("severity"), "-", move |r| Some(r.faults.get(number)?.severity));
+    columns.push(severity.meaning(format!(
+        "severity of the damage, from 0, none, to 1, the largest that the tooth allows; each kind's \
+         scale is in the guide{of_severity}"
+    )));
+    if with_bearings {
+        columns.extend(of_spall(number, named));
+    }
+    if faults().filter_map(ClassFault::teeth).any(|of| of.damage.has_area()) {
+        let area = Column::float64(&named("area_percent"), "%", move |r| r.faults.get(number)?.area_percent);
+        columns.push(area.meaning("part of the flank's contact part that the pits take, of the worst tooth"));
+    }
+    columns.into_iter().map(Column::nullable).collect()
 }
 
 /// Returns what the names of the columns of an entry of a list begin with: `fault`, and of further ones `fault_2` and so on.

@@ -16,16 +16,17 @@ use super::{PlanFile, Reading, in_another_file, over_zero};
 /// * `keep` - whose sampling rate and analysed channel count
 /// * `reading` - of the plan
 pub(super) fn read(value: &TomlValue<'_>, keep: &Keep, reading: &mut Reading) -> ReadResult<Background> {
-    let (name, channel, rate_hz) = if value.is_table() {
+    let mut options = RecordingOptions::default();
+    let name = if value.is_table() {
         value.table()?.read(|table| {
             let name = table.required("file", "the recording of a healthy machine")?.string()?.to_owned();
-            let channel = table.read_optional("channel", TomlValue::string)?.map(str::to_owned);
-            let rate =
+            options.channels.extend(table.read_optional("channel", TomlValue::string)?.map(Into::into));
+            options.sampling_rate_hz =
                 table.read_optional("sampling_rate_hz", |rate| over_zero(rate, "must be more than 0 S/s"))?;
-            Ok((name, channel, rate))
+            Ok(name)
         })?
     } else {
-        (value.string()?.to_owned(), None, None)
+        value.string()?.to_owned()
     };
     let path = reading.path_of(&name, PlanFile::NAMES[3]);
     let background = if reading.is_copy {
@@ -33,7 +34,7 @@ pub(super) fn read(value: &TomlValue<'_>, keep: &Keep, reading: &mut Reading) ->
         let read = Background::from_text(&text);
         read.ok_or_else(|| value.error(format!("{}: has lines that are no finite numbers", path.display())))?
     } else {
-        recorded(value, &path, channel, rate_hz, keep)?
+        recorded(value, &path, &options, keep)?
     };
     reading.sources.push(path);
     reading.files.push(PlanFile { name: PlanFile::NAMES[3], text: background.to_text() });
@@ -44,16 +45,10 @@ pub(super) fn read(value: &TomlValue<'_>, keep: &Keep, reading: &mut Reading) ->
 fn recorded(
     value: &TomlValue<'_>,
     path: &Path,
-    channel: Option<String>,
-    rate_hz: Option<f64>,
+    options: &RecordingOptions,
     keep: &Keep,
 ) -> ReadResult<Background> {
-    let options = RecordingOptions {
-        channels: channel.iter().map(|name| name.as_str().into()).collect(),
-        sampling_rate_hz: rate_hz,
-        ..RecordingOptions::default()
-    };
-    let recording = read_recording(path, &options).map_err(|error| value.error(error.to_string()))?;
+    let recording = read_recording(path, options).map_err(|error| value.error(error.to_string()))?;
     let refuse = |problem: String| value.error(format!("{}: {problem}", path.display()));
     let analysed = keep.analysed.name();
     let found = match &recording.channels[..] {
