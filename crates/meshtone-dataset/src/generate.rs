@@ -12,7 +12,7 @@ use meshtone::batch::{Control, KeepOf, simulate_many};
 use meshtone::scenario::{Scenario, ScenarioError, WarningKind};
 use rayon::prelude::*;
 
-use crate::contents::{OTHER_SHARD, WRONG_BYTES, WarningCounts, add_warnings, warnings};
+use crate::contents::{OTHER_SHARD, WRONG_BYTES, add_warnings, warnings};
 use crate::digest::Hashing;
 use crate::draw::Sampler;
 use crate::error::DatasetError;
@@ -20,7 +20,7 @@ use crate::finish;
 use crate::manifest::{self, CARD, MANIFEST, PREVIEW};
 use crate::plan::{Plan, with_faults};
 use crate::record::{KeepRecords, Record, Role, simulated_scenario};
-use crate::shard::{self, Column, FailedRecord, Item, Shards, WARNINGS, Wanted};
+use crate::shard::{self, FailedRecord, Item, Shards, WARNINGS, Wanted};
 use crate::store::Destination;
 use crate::verify::Check;
 
@@ -164,7 +164,7 @@ pub fn generate(
     }
     let sampler = Sampler::of_plan(plan)?;
     let shards = Shards::new(plan, &sampler);
-    let was_complete = manifest::check_place(plan, &shards, to, &to.files()?, manifest::read(to)?.as_ref())?;
+    let (was_complete, _) = manifest::check_place(plan, &shards, to)?;
     // A data set that is called complete is examined all the same: a file may have been lost or damaged since.
     let look = || PartContents::look(plan, &shards, to, part);
     let there = was_complete.then(look).transpose()?;
@@ -361,6 +361,9 @@ impl Run<'_> {
     }
 
     /// Writes shards as their records arrive.
+    ///
+    /// The simulations stop when a shard cannot be written, and when the user cancels: the shard is then left as it was. What was written is
+    /// added to `generated`.
     fn write(
         &self,
         missing: &[u64],
@@ -384,38 +387,30 @@ impl Run<'_> {
             Some(item)
         };
         for &shard in missing {
-            let written = self.write_shard(shard, &columns, &mut next);
-            let (failed, doubtful) = written.inspect_err(|_| stop.store(true, Ordering::Relaxed))?;
-            generated.failures.extend(failed);
-            add_warnings(&mut generated.warnings, doubtful);
+            let metadata = self.shards.metadata(self.plan.hash(), shard);
+            let written = self.to.write(&self.shards.name(shard), |file: &mut File| {
+                let mut hashing = Hashing::new(&mut *file);
+                let metadata = shard::write(&mut hashing, &self.plan.content, &columns, metadata, &mut next)?;
+                let digest = hashing.digest();
+                let read = shard::read(file.try_clone()?, Wanted::Columns(&[WARNINGS]))?;
+                shard::seal(file, &digest.sha256)?;
+                generated.failures.extend(metadata.failures);
+                add_warnings(&mut generated.warnings, warnings(&read));
+                Ok(())
+            });
+            written.map_err(|error| {
+                stop.store(true, Ordering::Relaxed);
+                match error {
+                    DatasetError::File { source, .. } if source.kind() == io::ErrorKind::Interrupted => {
+                        DatasetError::Stopped
+                    }
+                    error => error,
+                }
+            })?;
             generated.written_shards += 1;
             generated.written_records += self.shards.len(shard);
         }
         Ok(())
-    }
-
-    /// Writes a shard. Returns its records that failed, and how many have which warning.
-    fn write_shard(
-        &self,
-        shard: u64,
-        columns: &[Column],
-        next: impl FnMut() -> Option<Item>,
-    ) -> Result<(Vec<FailedRecord>, WarningCounts), DatasetError> {
-        let metadata = self.shards.metadata(self.plan.hash(), shard);
-        let written = self.to.write(&self.shards.name(shard), |file: &mut File| {
-            let mut hashing = Hashing::new(&mut *file);
-            let metadata = shard::write(&mut hashing, &self.plan.content, columns, metadata, next)?;
-            let digest = hashing.digest();
-            let read = shard::read(file.try_clone()?, Wanted::Columns(&[WARNINGS]))?;
-            shard::seal(file, &digest.sha256)?;
-            Ok((metadata.failures, warnings(&read)))
-        });
-        written.map_err(|error| match error {
-            DatasetError::File { source, .. } if source.kind() == io::ErrorKind::Interrupted => {
-                DatasetError::Stopped
-            }
-            error => error,
-        })
     }
 }
 

@@ -30,18 +30,14 @@ pub(crate) fn begin(plan: &Plan, to: &Destination) -> Result<(), DatasetError> {
     to.write_unless_there(MANIFEST, sealed(&head(plan, false), "").as_bytes())
 }
 
-/// Checks that the data set of a plan may be written to a place. Returns whether all of it is there already. Nothing is written.
-///
-/// # Arguments
-/// * `there` - the files of the place
-/// * `manifest` - the manifest of the place
+/// Checks that the data set of a plan may be written to a place. Returns whether all of it is there already, and the files of the
+/// place. Nothing is written.
 pub(crate) fn check_place(
     plan: &Plan,
     shards: &Shards,
     to: &Destination,
-    there: &Files,
-    manifest: Option<&ReadManifest>,
-) -> Result<bool, DatasetError> {
+) -> Result<(bool, Files), DatasetError> {
+    let (there, manifest) = (to.files()?, read(to)?);
     if let Some(name) = there.keys().find(|name| !is_of_a_data_set(name)) {
         let help = match manifest {
             Some(_) => "move that file elsewhere: in the data set's folders, programs read whatever there is",
@@ -51,19 +47,21 @@ pub(crate) fn check_place(
     }
     let Some(manifest) = manifest else {
         // A run that was killed between its first file and its manifest has left only files that it would write again.
-        let Some(data) = there.keys().find(|name| name.starts_with(FOLDER)) else { return Ok(false) };
+        let Some(data) = there.keys().find(|name| name.starts_with(FOLDER)) else {
+            return Ok((false, there));
+        };
         let problem = format!("{to} has {data}, but no {MANIFEST}");
         let help = "put it back from a copy, or name another directory with -o";
         return Err(DatasetError::refused(problem, help));
     };
-    check_same(plan, to, manifest)?;
+    check_same(plan, to, &manifest)?;
     let foreign = |name: &&String| name.starts_with(FOLDER) && shards.number(name).is_none();
     if let Some(name) = there.keys().find(foreign) {
         let problem = format!("{to} has a shard that is none of this data set: {name}");
         let help = "move it elsewhere, or name another directory with -o";
         return Err(DatasetError::refused(problem, help));
     }
-    Ok(manifest.complete)
+    Ok((manifest.complete, there))
 }
 
 fn check_same(plan: &Plan, to: &Destination, manifest: &ReadManifest) -> Result<(), DatasetError> {

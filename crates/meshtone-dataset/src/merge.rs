@@ -115,8 +115,7 @@ struct MergeSource<'p> {
 impl<'p> MergeSource<'p> {
     /// Examines a place. This is done only once for each place, since listing very many names takes seconds.
     fn look(at: &'p Destination, plan: &Plan, shards: &Shards) -> Result<Self, DatasetError> {
-        let files = at.files()?;
-        let is_complete = manifest::check_place(plan, shards, at, &files, manifest::read(at)?.as_ref())?;
+        let (is_complete, files) = manifest::check_place(plan, shards, at)?;
         Ok(Self { at, is_complete, shards: files.keys().filter_map(|name| shards.number(name)).collect() })
     }
 }

@@ -331,7 +331,7 @@ impl Sampler<'_> {
     /// decide them.
     fn suits(&self, level: Level, split: usize, values: &Values, obstacles: &mut Obstacles) -> bool {
         let number = |key: &str| values.number(key);
-        let own = self.content.splits.shift(split);
+        let own = split.checked_sub(Splits::ALIKE.len());
         self.content.splits.shifts.iter().zip(&self.shift_levels).enumerate().all(|(s, (shift, levels))| {
             let decided = shift.when.iter().zip(levels).filter(|(_, decided)| **decided <= level);
             let mut decided = decided.map(|(condition, _)| condition);

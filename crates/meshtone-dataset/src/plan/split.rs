@@ -58,14 +58,6 @@ impl Splits {
         self.parts.iter().copied().chain(self.shifts.iter().map(|shift| shift.part)).collect()
     }
 
-    /// The shift that a split is; none for those that are drawn alike.
-    ///
-    /// # Arguments
-    /// * `split` - number in [`Self::names`]
-    pub fn shift(&self, split: usize) -> Option<usize> {
-        split.checked_sub(Self::ALIKE.len())
-    }
-
     /// Counts the units, or mountings, that each split has: by largest remainder, and at least one where its part is more than 0
     /// and there are enough.
     ///

@@ -37,13 +37,13 @@ pub(super) fn start(
 ) -> Start {
     let marked = &turning.wheels[turning.marked];
     let (wheel, passed, turn) = if keep.aligned {
-        let (number, tooth) =
-            faults.first().map_or((turning.marked, 0), |(_, fault)| turning.place_of(fault));
+        let of_fault = |(_, fault): &(usize, &Fault)| (turning.number(&fault.wheel), fault.tooth_index());
+        let (number, tooth) = faults.first().map_or((turning.marked, 0), of_fault);
         let wheel = &turning.wheels[number];
         let of_marked = f64::from(turning.turns) * f64::from(marked.teeth);
         let pitches = of_marked * wheel.pitches_per_revolution / marked.pitches_per_revolution;
         let turns = (pitches / f64::from(wheel.teeth) + 1e-9).floor().max(1.0);
-        (wheel, tooth, one_of(drawn.seed, turns as u32))
+        (wheel, tooth as u64, one_of(drawn.seed, turns as u32))
     } else {
         let after = one_of(drawn.wheels_seed, marked.teeth);
         let mark = (marked.teeth - after) % marked.teeth.max(1);

@@ -1,7 +1,7 @@
 //! How the wheels of a scenario turn, of a pair and of a gearbox alike.
 
 use meshtone::operation::greatest_common_divisor;
-use meshtone::scenario::{Fault, Layout, Scenario, ScenarioError, WheelName};
+use meshtone::scenario::{Layout, Scenario, ScenarioError, WheelName};
 
 /// How the wheels of a scenario turn.
 ///
@@ -112,14 +112,6 @@ impl Turning {
     /// * `wheel` - name of a wheel of the scenario
     pub fn number(&self, wheel: &str) -> usize {
         self.wheels.iter().position(|known| known.name == wheel).unwrap_or(0)
-    }
-
-    /// Number of the wheel of a fault and the index of its tooth, of several of the first.
-    ///
-    /// # Arguments
-    /// * `fault` - of a record
-    pub fn place_of(&self, fault: &Fault) -> (usize, u64) {
-        (self.number(&fault.wheel), fault.tooth_index() as u64)
     }
 }
 

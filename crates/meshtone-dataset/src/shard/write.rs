@@ -51,8 +51,7 @@ pub(crate) fn write(
     mut metadata: ShardMetadata,
     mut next: impl FnMut() -> Option<Item>,
 ) -> io::Result<ShardMetadata> {
-    let properties = properties(columns).map_err(io::Error::other)?;
-    let mut table = TableWriter::new(to, columns.iter().map(TableColumn::from).collect(), properties)?;
+    let mut table = table(to, columns)?;
     let mut records = Vec::new();
     let mut bytes = 0;
     let mut twin: Option<Box<Record>> = None;
@@ -100,15 +99,15 @@ pub(crate) fn write(
 /// * `columns` - its columns
 /// * `records` - its rows
 pub(crate) fn write_table(to: impl Write + Send, columns: &[Column], records: &[Record]) -> io::Result<()> {
-    let properties = properties(columns).map_err(io::Error::other)?;
-    let mut table = TableWriter::new(to, columns.iter().map(TableColumn::from).collect(), properties)?;
+    let mut table = table(to, columns)?;
     table.write_rows(columns.iter().map(|column| (column.cells)(records)).collect())?;
     table.close()
 }
 
-fn properties(columns: &[Column]) -> Result<WriterProperties, parquet::errors::ParquetError> {
+fn table<W: Write + Send>(to: W, columns: &[Column]) -> io::Result<TableWriter<W>> {
+    let level = ZstdLevel::try_new(COMPRESSION_LEVEL).map_err(io::Error::other)?;
     let mut builder = WriterProperties::builder()
-        .set_compression(Compression::ZSTD(ZstdLevel::try_new(COMPRESSION_LEVEL)?))
+        .set_compression(Compression::ZSTD(level))
         .set_statistics_enabled(EnabledStatistics::Chunk)
         .set_data_page_size_limit(PAGE_BYTES);
     for column in columns.iter().filter(|column| column.is_signal()) {
@@ -119,7 +118,7 @@ fn properties(columns: &[Column]) -> Result<WriterProperties, parquet::errors::P
             .set_column_encoding(path.clone(), Encoding::BYTE_STREAM_SPLIT)
             .set_column_statistics_enabled(path, EnabledStatistics::None);
     }
-    Ok(builder.build())
+    TableWriter::new(to, columns.iter().map(TableColumn::from).collect(), builder.build())
 }
 
 /// The enhanced difference signal of a record; empty where nothing is enhanced.
