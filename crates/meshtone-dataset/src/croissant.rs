@@ -66,7 +66,12 @@ const CONTEXT: &str = include_str!("croissant_context.json");
 
 /// The files. That of all hashes cannot stand here with its own, as it has this file's; nor do a million shards.
 fn distribution(shards: &Shards, documents: &[Document]) -> Value {
-    let file_set = |id: &str, includes: &str, format: &str, description: &str| {
+    let manifest = "counts, failures, and the SHA-256 of every file";
+    let file_sets = [
+        (SHARDS, &*shards.pattern("*"), "application/x-parquet", "the records, of one split in each file"),
+        ("manifest", MANIFEST, "application/json", manifest),
+    ];
+    let file_sets = file_sets.map(|(id, includes, format, description)| {
         json!({
             "@type": "cr:FileSet",
             "@id": id,
@@ -75,18 +80,8 @@ fn distribution(shards: &Shards, documents: &[Document]) -> Value {
             "encodingFormat": format,
             "includes": includes,
         })
-    };
-    let manifest = "counts, failures, and the SHA-256 of every file";
-    let mut files = vec![
-        file_set(
-            SHARDS,
-            &shards.pattern("*"),
-            "application/x-parquet",
-            "the records, of one split in each file",
-        ),
-        file_set("manifest", MANIFEST, "application/json", manifest),
-    ];
-    files.extend(documents.iter().map(|Document { name, digest }| {
+    });
+    let files = documents.iter().map(|Document { name, digest }| {
         json!({
             "@type": "cr:FileObject",
             "@id": name,
@@ -96,8 +91,8 @@ fn distribution(shards: &Shards, documents: &[Document]) -> Value {
             "encodingFormat": media_type(name),
             "sha256": digest.sha256,
         })
-    }));
-    Value::Array(files)
+    });
+    file_sets.into_iter().chain(files).collect()
 }
 
 fn media_type(name: &str) -> &'static str {

@@ -142,16 +142,12 @@ impl Column {
 
 impl From<&Column> for TableColumn {
     fn from(column: &Column) -> Self {
-        let mut metadata = vec![("unit", &column.unit), ("description", &column.description)];
+        let mut metadata = vec![("unit", column.unit.as_str()), ("description", &column.description)];
         if let Topic::Key(key) = &column.topic {
             metadata.push(("key", key));
         }
-        Self {
-            name: column.name.clone(),
-            cells: column.cell_type,
-            nullable: column.nullable,
-            metadata: metadata.into_iter().map(|(key, value)| (key.to_owned(), value.clone())).collect(),
-        }
+        let nullable = column.nullable;
+        Self { nullable, ..Self::new(&column.name, column.cell_type).with_metadata(metadata) }
     }
 }
 
