@@ -20,8 +20,7 @@ pub struct Expression {
 pub struct Condition {
     text: String,
     left: Node,
-    /// One of [`parse::COMPARISONS`].
-    comparison: &'static str,
+    comparison: Comparison,
     right: Node,
 }
 
@@ -30,8 +29,25 @@ enum Node {
     Number(f64),
     Key(String),
     Negative(Box<Node>),
-    /// One of [`parse::OPERATORS`] between two numbers.
-    Of(&'static str, Box<[Node; 2]>),
+    Of(Operation, Box<[Node; 2]>),
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Operation {
+    Plus,
+    Minus,
+    Times,
+    Over,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Comparison {
+    Less,
+    AtMost,
+    More,
+    AtLeast,
+    Equal,
+    Unequal,
 }
 
 impl Expression {
@@ -98,12 +114,12 @@ impl Condition {
     pub fn holds(&self, number: &dyn Fn(&str) -> Option<f64>) -> Option<bool> {
         let (left, right) = (self.left.value(number)?, self.right.value(number)?);
         Some(match self.comparison {
-            "<" => left < right,
-            "<=" => left <= right,
-            ">" => left > right,
-            ">=" => left >= right,
-            "==" => left == right,
-            _ => left != right,
+            Comparison::Less => left < right,
+            Comparison::AtMost => left <= right,
+            Comparison::More => left > right,
+            Comparison::AtLeast => left >= right,
+            Comparison::Equal => left == right,
+            Comparison::Unequal => left != right,
         })
     }
 
@@ -134,11 +150,11 @@ impl Node {
             Self::Of(operation, nodes) => {
                 let [left, right] = &**nodes;
                 let (left, right) = (left.value(number)?, right.value(number)?);
-                match *operation {
-                    "+" => left + right,
-                    "-" => left - right,
-                    "*" => left * right,
-                    _ => left / right,
+                match operation {
+                    Operation::Plus => left + right,
+                    Operation::Minus => left - right,
+                    Operation::Times => left * right,
+                    Operation::Over => left / right,
                 }
             }
         })

@@ -1,16 +1,24 @@
 //! Reading expressions and conditions.
 
-use super::Node;
+use super::{Comparison, Node, Operation};
 
 /// (characters) Length above which a text is refused, because it could be nested too deep.
 const LONGEST: usize = 1000;
 const MOST_NESTED: usize = 50;
 
 /// Operators by their precedence: those that bind least come first.
-pub(super) const OPERATORS: [[&str; 2]; 2] = [["+", "-"], ["*", "/"]];
+const OPERATORS: [[(&str, Operation); 2]; 2] =
+    [[("+", Operation::Plus), ("-", Operation::Minus)], [("*", Operation::Times), ("/", Operation::Over)]];
 
 /// Symbols that others begin with come after those.
-pub(super) const COMPARISONS: [&str; 6] = ["<=", ">=", "==", "!=", "<", ">"];
+const COMPARISONS: [(&str, Comparison); 6] = [
+    ("<=", Comparison::AtMost),
+    (">=", Comparison::AtLeast),
+    ("==", Comparison::Equal),
+    ("!=", Comparison::Unequal),
+    ("<", Comparison::Less),
+    (">", Comparison::More),
+];
 
 pub(super) fn expression(text: &str) -> Result<Node, String> {
     let mut reader = Reader::new(text)?;
@@ -19,11 +27,10 @@ pub(super) fn expression(text: &str) -> Result<Node, String> {
     Ok(node)
 }
 
-pub(super) fn condition(text: &str) -> Result<(Node, &'static str, Node), String> {
+pub(super) fn condition(text: &str) -> Result<(Node, Comparison, Node), String> {
     let mut reader = Reader::new(text)?;
     let left = reader.operation(0)?;
-    let found = COMPARISONS.into_iter().find(|symbol| reader.take(symbol));
-    let comparison = found.ok_or_else(|| reader.unexpected("<, <=, >, >=, == or !="))?;
+    let comparison = reader.comparison()?;
     let right = reader.operation(0)?;
     reader.end()?;
     Ok((left, comparison, right))
@@ -66,12 +73,17 @@ impl<'a> Reader<'a> {
         format!("has `{found}` where {wanted} is expected")
     }
 
+    fn comparison(&mut self) -> Result<Comparison, String> {
+        let found = COMPARISONS.into_iter().find(|(symbol, _)| self.take(symbol));
+        found.map(|(_, comparison)| comparison).ok_or_else(|| self.unexpected("<, <=, >, >=, == or !="))
+    }
+
     /// Reads operations of a precedence and of all that bind more.
     fn operation(&mut self, precedence: usize) -> Result<Node, String> {
         let Some(operators) = OPERATORS.get(precedence) else { return self.factor() };
         let mut left = self.operation(precedence + 1)?;
-        while let Some(operation) = operators.iter().find(|symbol| self.take(symbol)) {
-            left = Node::Of(operation, Box::new([left, self.operation(precedence + 1)?]));
+        while let Some((_, operation)) = operators.iter().find(|(symbol, _)| self.take(symbol)) {
+            left = Node::Of(*operation, Box::new([left, self.operation(precedence + 1)?]));
         }
         Ok(left)
     }
