@@ -44,7 +44,7 @@ pub struct Adapt {
 
 const EXAMPLES: &str = "\
 Examples:
-  meshtone adapt run_up.csv -c bearing --tach tacho --scenario rig.toml --classes pits,tooth-breakage -o set
+  meshtone adapt run_up.csv first.csv -c bearing --tach tacho --scenario rig.toml --classes pits,tooth-breakage -o set
   meshtone adapt monday.csv friday.csv -c bearing --tach tacho --scenario gearbox.toml --classes pits@z3,outer@input:0 -o set";
 
 impl Adapt {
@@ -75,25 +75,25 @@ fn table(adaptation: &Adaptation, estimate: &PathEstimate, to: &Destination) -> 
     let Adaptation { plan, threshold, healthy, expected, .. } = adaptation;
     let [from_hz, to_hz] = estimate.compared_hz;
     let windows = counted(healthy.len() as u64, "window");
-    let row = |name: &str, [mean, least, largest]: [f64; 3]| {
-        format!("  {name:<40}  {mean:>5.2}  {least:>5.2}  {largest:>5.2}\n")
+    let row = |name: &str, [mean, least, largest]: [f64; 3], chance: f64| {
+        format!("  {name:<40}  {mean:>5.2}  {least:>5.2}  {largest:>5.2}  {chance:>6.2}\n")
     };
     let head = format!(
-        "  {} of {} classes: {}\n  the path was compared from {from_hz:.0} to {to_hz:.0} Hz\n  called damaged above a probability of {threshold:.3}, from {windows} of the healthy recordings and healthy simulations\n",
+        "  {} of {} classes: {}\n  the path was compared from {from_hz:.0} to {to_hz:.0} Hz\n  called damaged above a probability of {threshold:.3}, by {windows} of the healthy recordings and by healthy simulations\n",
         counted(plan.records(), "record"),
         adaptation.classes().len(),
         adaptation.classes().join(", ")
     );
     let expected = format!(
-        "\n  expected, of {} simulated machines that differ from the scenario\n  {:<40}  {:>5}  {:>5}  {:>5}\n{}{}{}",
+        "\n  expected, of {} simulated machines that differ from the scenario\n  {:<40}  {:>5}  {:>5}  {:>5}  chance\n{}{}{}",
         expected.machines,
         "",
         "mean",
         "least",
         "most",
-        row("area under the curve of damage", expected.area),
-        row("balanced accuracy of detection", expected.detection),
-        row("mean recall of all classes", expected.recall)
+        row("area under the curve of damage", expected.area, 0.5),
+        row("balanced accuracy of detection", expected.detection, 0.5),
+        row("mean recall of all classes", expected.recall, 1.0 / adaptation.classes().len() as f64)
     );
     format!("{head}{expected}\n{to}\n")
 }

@@ -73,6 +73,10 @@ impl Bench {
         let directory = self.output.clone().unwrap_or_else(|| named_after(&self.directory, "bench"));
         let read: Vec<&Path> = recordings.iter().map(|recording| &*recording.path).collect();
         let output = OutputDirectory::for_files(&directory, &FILES, &read)?;
+        if output.path.join(checksums::FILE).exists() && !output.path.join(JSON).exists() {
+            let problem = format!("{} has a {} of another program", directory.display(), checksums::FILE);
+            return Failure::refuse(problem, "name another directory with -o");
+        }
         let Preset { name, title, reference, sources, machine, .. } = &set;
         let mut checksums = Checksums::recorded(&output.path);
         let files = self.files(&recordings, &mut checksums, &directory);

@@ -11,6 +11,9 @@ use crate::support::{printed_json, stdout};
 #[test]
 fn a_set_of_a_machine_is_made_and_kept() {
     let workplace = workplace();
+    // A pair needs no sensor in its scenario: the path is then that of the usual place.
+    let rig = fs::read_to_string(workplace.path("rig.toml")).unwrap();
+    workplace.write("rig.toml", rig.replace("[[sensor]]\n", ""));
     let arguments = [
         "adapt",
         "healthy",
@@ -60,6 +63,7 @@ fn classes_that_the_machine_cannot_have_are_refused() {
         ("rust", "there are missing-tooth"),
         ("pits@z3", "the wheels are pinion, gear"),
         ("outer@input:0", "no ball or roller bearing"),
+        ("pits,pits", "named twice"),
     ] {
         let arguments =
             ["adapt", "healthy", "--scenario", "rig.toml", "--draws", "8", "--classes", class, "-o", "set"];

@@ -117,6 +117,9 @@ fn what_cannot_be_scored_is_refused() {
         &["none of the 1 files in it has a name of a set", "cwru (97.mat, 98.mat", "oedi-623 (h30hz*.csv"],
     );
     fails(&[".", "--set", "cwr"], &["--set cwr: there is no such set", "cwru, mfpt, oedi-623"]);
+    fs::create_dir(workplace.path("sums")).unwrap();
+    workplace.write("sums/SHA256SUMS", "of the download\n");
+    fails(&[".", "-o", "sums"], &["sums has a SHA256SUMS of another program"]);
     fails(&[".", "--set", "mfpt"], &["looked for are mfpt (baseline_*.mat"]);
     fails(&[".", "--records", "512"], &["--diagnose"]);
     fails(&[".", "--diagnose"], &["--diagnose: cwru is of a bearing"]);

@@ -41,10 +41,21 @@ impl AdaptSettings {
     /// * `scenario` - of the machine
     ///
     /// # Errors
-    /// No class; a kind of damage, a wheel or a bearing that there is not.
+    /// No class, or one twice; a kind of damage, a wheel or a bearing that there is not.
     pub fn check(&self, scenario: &Scenario) -> Result<(), DatasetError> {
         if self.classes.is_empty() {
             return Err(DatasetError::refused("there is no class of damage", "name one, such as pits@gear"));
+        }
+        if let Some(class) = self
+            .classes
+            .iter()
+            .enumerate()
+            .find_map(|(at, class)| self.classes[..at].contains(class).then_some(class))
+        {
+            return Err(DatasetError::refused(
+                format!("class {class:?} is named twice"),
+                "name each class once",
+            ));
         }
         self.classes.iter().try_for_each(|class| fault_of(scenario, class).map(drop))
     }
@@ -76,7 +87,8 @@ fn fault_of(scenario: &Scenario, class: &str) -> Result<(String, bool), DatasetE
             Some(seat) => Ok((format!("{{ bearing = {seat:?}, race = {kind:?}, severity = 0.5 }}"), true)),
             None if seats.is_empty() => refused(
                 "the scenario has no ball or roller bearing".into(),
-                "state kind = \"ball\" of a [[bearing]]".into(),
+                "state kind = \"ball\" of a [[bearing]], of a pair as a gearbox: meshtone init gearbox"
+                    .into(),
             ),
             None => refused(
                 "no such bearing".into(),
@@ -86,7 +98,8 @@ fn fault_of(scenario: &Scenario, class: &str) -> Result<(String, bool), DatasetE
     }
     let Some(known) = damage_kinds().into_iter().find(|known| known.name == kind) else {
         let names: Vec<&str> = damage_kinds().iter().map(|kind| kind.name).chain(RACES).collect();
-        return refused("no such kind of damage".into(), format!("there are {}", names.join(", ")));
+        let help = format!("there are {}, beside healthy records, which every set has", names.join(", "));
+        return refused("no such kind of damage".into(), help);
     };
     let wheels = scenario.wheel_names();
     let wheel = match part {
@@ -146,7 +159,7 @@ impl Machine<'_> {
         let mut text = format!(
             "title = \"Vibration of one machine, simulated\"\n\
              description = \"Simulations of a machine whose path and drive were estimated from its healthy recordings.\"\n\
-             scenario = \"machine.toml\"\nseed = {seed}\nunits = {units}\nvariation = {variation:?}\n\
+             scenario = \"scenario.toml\"\nseed = {seed}\nunits = {units}\nvariation = {variation:?}\n\
              questions = [\"detection\", \"diagnosis\", \"severity\"]\n\n\
              [[class]]\nlabel = \"healthy\"\ncount = {healthy}\n"
         );
@@ -177,7 +190,7 @@ impl Machine<'_> {
         // A plan names its scenario as a file; its copies stand beside the data.
         let folder = TempDir::new().map_err(DatasetError::write("a plan"))?;
         let path = folder.path().join("plan.toml");
-        let written = fs::write(folder.path().join("machine.toml"), scenario.to_toml());
+        let written = fs::write(folder.path().join("scenario.toml"), scenario.to_toml());
         written.map_err(DatasetError::write("a plan"))?;
         Ok(Plan::read_text(text, &path)?)
     }

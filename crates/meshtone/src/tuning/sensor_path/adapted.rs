@@ -4,6 +4,7 @@ use super::PathEstimate;
 use super::sidebands::{SAME, SidebandCause, ripple_order};
 use crate::operation::MOST_RIPPLE;
 use crate::scenario::{MOST_WOBBLE, Scenario};
+use crate::sensor::Sensor;
 use crate::signal::GearTrain;
 
 /// (-) Largest share of a tolerance that a run-out may have.
@@ -21,8 +22,11 @@ impl PathEstimate {
     /// * `scenario` - the one that the path was estimated for
     /// * `train` - its shafts and wheels
     pub fn adapted(&self, scenario: &Scenario, train: &GearTrain) -> Scenario {
-        // Those that no scenario needs to state have a path, too.
+        // A sensor that the scenario need not state has a path, too.
         let mut adapted = scenario.clone().with_sensors(scenario.all_sensors());
+        if adapted.sensors.is_empty() {
+            adapted.sensors.push(Sensor::default());
+        }
         if let Some(sensor) = adapted.sensors.first_mut() {
             sensor.frequency_response = Some(self.frequency_response());
         }
