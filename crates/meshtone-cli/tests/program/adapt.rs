@@ -33,7 +33,7 @@ fn a_set_of_a_machine_is_made_and_kept() {
         said.contains("80 records of 3 classes: healthy, missing-tooth@pinion, tooth-breakage"),
         "{said}"
     );
-    assert!(said.contains("windows of the healthy recordings and healthy simulations"), "{said}");
+    assert!(said.contains("windows of the healthy recordings and by healthy simulations"), "{said}");
     workplace.succeeds(&["dataset", "verify", "set"]);
     let scenario = fs::read_to_string(workplace.path("set/scenario.toml")).unwrap();
     assert!(scenario.contains("frequency_response"), "{scenario}");
@@ -63,11 +63,13 @@ fn classes_that_the_machine_cannot_have_are_refused() {
         ("rust", "there are missing-tooth"),
         ("pits@z3", "the wheels are pinion, gear"),
         ("outer@input:0", "no ball or roller bearing"),
-        ("pits,pits", "named twice"),
+        ("pits,pits", "is named twice"),
+        ("pits,rust", "beside healthy records"),
     ] {
         let arguments =
             ["adapt", "healthy", "--scenario", "rig.toml", "--draws", "8", "--classes", class, "-o", "set"];
-        workplace.fails(2, &arguments, &[class, says]);
+        let named = class.rsplit(',').next().unwrap();
+        workplace.fails(2, &arguments, &[named, says]);
         assert!(!workplace.path("set").exists());
     }
 }
