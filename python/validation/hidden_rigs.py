@@ -38,7 +38,7 @@ class HiddenPair:
     )
     severities = {"tooth-breakage": (0.3, 0.9), "pits": (0.1, 0.6), "root-crack": (0.5, 1.0), "wear": (0.4, 0.9)}
     channel, torque_nm, asked_healthy, asked_of_kind, units = "housing_g", 60, 80, 40, 24
-    tried: str | float = "sqrt"  # Part of the features that a split of the trees for comparison draws from: what is better for them.
+    tried: str | float = "sqrt"  # Features that a split of the trees for comparison draws from; of gearboxes more are better.
 
     def __init__(self, number: int) -> None:
         self.draws = np.random.default_rng(1000 + number)
