@@ -51,7 +51,7 @@ fn compliance(wheel: &Wheel, profile: &ToothProfile, section: &ToothSection) -> 
 fn loaded<'a>(
     wheel: &'a Wheel,
     profile: &'a ToothProfile,
-    damage: Option<&'a DamagedTooth>,
+    damage: Option<&DamagedTooth>,
     foundation: &FoundationCoefficients,
 ) -> LoadedFlank<'a> {
     LoadedFlank::new(Flank { wheel, profile }, damage, Material::Steel, foundation)
