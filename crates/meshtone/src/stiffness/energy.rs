@@ -19,9 +19,6 @@ impl Energy {
     }
 }
 
-/// Numbers that are integrated of a section's bending about both axes.
-pub(crate) const BENDING: usize = 15;
-
 /// What is integrated of a section's bending about both axes, `(M_z² Iy − 2 M_z M_y Iyz + M_y² Iz)/(2E (Iy Iz − Iyz²))`: the moments of
 /// the main bending, the cross terms and the bending about y.
 ///
@@ -35,7 +32,7 @@ pub(crate) fn bending_integrands(
     x: f64,
     [yc, zc]: [f64; 2],
     [iy, iz, iyz]: [f64; 3],
-) -> [f64; BENDING] {
+) -> [f64; 15] {
     let per_determinant = flexibility / (iy * iz - iyz * iyz);
     let (main, cross, side) = (iy * per_determinant, -iyz * per_determinant, iz * per_determinant);
     let [m0, m1, m2, m3, m4, m5] = main_integrands(main, x, yc);
@@ -64,7 +61,7 @@ pub(crate) fn main_integrands(w: f64, x: f64, yc: f64) -> [f64; 6] {
 }
 
 /// Energy of a load at (x_i, y_i, z_i) by the integrals of [`bending_integrands`] from the root to x_i.
-pub(crate) fn bending_energy(integrals: &[f64; BENDING], [x_i, y_i, z_i]: [f64; 3]) -> Energy {
+pub(crate) fn bending_energy(integrals: &[f64; 15], [x_i, y_i, z_i]: [f64; 3]) -> Energy {
     let &[m0, m1, m2, m3, m4, m5, c, cx, cy, cz, cxz, cyz, s, sz, szz] = integrals;
     let mut energy = main_energy([m0, m1, m2, m3, m4, m5], x_i, y_i);
     energy.sa += 2.0 * (z_i * (cx - x_i * c) - (cxz - x_i * cz));
@@ -86,26 +83,20 @@ pub(crate) fn main_energy([xx, x, one, xyc, yc, ycyc]: [f64; 6], x_i: f64, y_i: 
 ///
 /// # Arguments
 /// * `x` - the places, rising
-/// * `from` - number of the place to begin at, and the integrals up to it
-/// * `to` - number of the last place
 /// * `integrand` - at a place of a number
-/// * `each` - takes the number of each place and the integrals up to it
-pub(crate) fn cumulative<const N: usize>(
-    x: &[f64],
-    (from, mut integral): (usize, [f64; N]),
-    to: usize,
-    integrand: impl Fn(usize) -> [f64; N],
-    mut each: impl FnMut(usize, &[f64; N]),
-) {
-    each(from, &integral);
-    let mut before = integrand(from);
-    for i in from + 1..=to {
+pub(crate) fn cumulative<const N: usize>(x: &[f64], integrand: impl Fn(usize) -> [f64; N]) -> Vec<[f64; N]> {
+    let mut integral = [0.0; N];
+    let mut before = integrand(0);
+    let mut all = Vec::with_capacity(x.len());
+    all.push(integral);
+    for i in 1..x.len() {
         let here = integrand(i);
         let half_step = 0.5 * (x[i] - x[i - 1]);
         for n in 0..N {
             integral[n] += half_step * (before[n] + here[n]);
         }
         before = here;
-        each(i, &integral);
+        all.push(integral);
     }
+    all
 }

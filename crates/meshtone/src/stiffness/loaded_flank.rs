@@ -5,12 +5,10 @@
 //! `U = ∫ (M_z² Iy − 2 M_z M_y Iyz + M_y² Iz)/(2E (Iy Iz − Iyz²)) + F_s² s/G + F_a²/(2EA) dx` from the root to x_i. Everything
 //! that depends on the load is moved out of the integrals (paper, Eq. 2 → 3): they are summed once up to every eighth point, and a load adds the few behind it.
 
-use std::array::from_fn;
-
-use super::energy::{BENDING, Energy, bending_energy, bending_integrands, cumulative};
+use super::energy::{Energy, bending_energy, bending_integrands, cumulative};
 use super::foundation::{Foundation, LoadDirection};
 use crate::damage::{DamagedTooth, Section};
-use crate::wheel::{Flank, FlankPoint, FoundationCoefficients, Material, ToothProfile};
+use crate::wheel::{Flank, FlankPoint, FoundationCoefficients, Material};
 
 /// A load on a flank, of unit size.
 #[derive(Debug, Clone, Copy)]
@@ -30,31 +28,26 @@ pub struct FlankLoad {
 /// A tooth that can be loaded anywhere on its flank.
 pub struct LoadedFlank<'a> {
     flank: Flank<'a>,
-    integrals: Integrals<'a>,
+    integrals: Integrals,
     foundation: Foundation,
-    material: Material,
+    youngs_modulus_mpa: f64,
 }
 
-/// Integrals from the root up to every [`EVERY`]th profile point.
-enum Integrals<'a> {
+/// Integrals from the root up to each profile point.
+enum Integrals {
     /// Of a sound tooth, whose sections' centres lie on its centre line.
     Sound(Vec<[f64; SOUND]>),
-    /// Of a damaged one.
-    Damaged(&'a DamagedTooth, Vec<[f64; DAMAGED]>),
+    /// Of a damaged one: bending about both axes, then shear and compression.
+    Damaged(Vec<[f64; 15]>, Vec<[f64; 2]>),
 }
 
 /// `w (x², x, 1)` with `w = 1/(2E Iz)`, `1/(2E Iy)`, shear and compression.
 const SOUND: usize = 6;
-/// Bending about both axes, then shear and compression.
-const DAMAGED: usize = BENDING + 2;
-/// Profile points from one whose integrals are kept to the next. A load sums those between anew: all of them would be a megabyte, which costs
-/// more to get from the system than to compute.
-const EVERY: usize = 8;
 
 impl<'a> LoadedFlank<'a> {
     /// The integrals of a tooth.
     ///
-    /// They are summed once along the profile, so that each load afterwards takes a few points. A sound tooth is
+    /// They are summed once along the profile, so that each load afterwards takes two values of each and no loop. A sound tooth is
     /// symmetric: its integrands have no product of inertia and follow from one division a point, which is most of the time of a healthy
     /// wheel.
     ///
@@ -65,18 +58,46 @@ impl<'a> LoadedFlank<'a> {
     /// * `foundation` - coefficients of the fillet foundation
     pub fn new(
         flank: Flank<'a>,
-        damage: Option<&'a DamagedTooth>,
+        damage: Option<&DamagedTooth>,
         material: Material,
         foundation: &FoundationCoefficients,
     ) -> Self {
+        let bending = 1.0 / (2.0 * material.youngs_modulus_mpa());
+        let shear = 1.0 / material.shear_modulus_mpa();
+        let (profile, width) = (flank.profile, flank.wheel.face_width_mm);
+        let depth = |i: usize| profile.x_mm[i] - profile.x_mm[0];
         let integrals = match damage {
-            None => Integrals::Sound(marks(flank.profile, of_sound(flank, material))),
+            None => {
+                // The reciprocals of W (2Y)³/12, 2Y W³/12 and 2Y W, by one division.
+                let [of_iz, of_iy, of_shear, of_area] = [
+                    bending * 12.0 / (8.0 * width),
+                    bending * 6.0 / width.powi(3),
+                    shear * 0.6 / (2.0 * width),
+                    bending / (2.0 * width),
+                ];
+                Integrals::Sound(cumulative(&profile.x_mm, |i| {
+                    let (x, inverse) = (depth(i), 1.0 / profile.y_mm[i]);
+                    let w = of_iz * inverse * inverse * inverse;
+                    [w * x * x, w * x, w, of_iy * inverse, of_shear * inverse, of_area * inverse]
+                }))
+            }
             Some(damage) => {
-                Integrals::Damaged(damage, marks(flank.profile, of_damaged(flank, damage, material)))
+                let section = |i: usize| Section::damaged(damage, profile, width, i);
+                let sections: Vec<Section> = (0..profile.len()).map(section).collect();
+                let bent = |i: usize| {
+                    let Section { yc_mm, zc_mm, iy_mm4, iz_mm4, iyz_mm4, .. } = sections[i];
+                    bending_integrands(bending, depth(i), [yc_mm, zc_mm], [iy_mm4, iz_mm4, iyz_mm4])
+                };
+                let others = |i: usize| [shear * sections[i].shear_per_mm2, bending / sections[i].area_mm2];
+                Integrals::Damaged(cumulative(&profile.x_mm, bent), cumulative(&profile.x_mm, others))
             }
         };
-        let foundation = Foundation::local(flank.wheel, flank.profile, foundation, material.poisson_ratio());
-        Self { foundation, material, flank, integrals }
+        Self {
+            foundation: Foundation::local(flank.wheel, profile, foundation, material.poisson_ratio()),
+            youngs_modulus_mpa: material.youngs_modulus_mpa(),
+            flank,
+            integrals,
+        }
     }
 
     /// (mm/N) Displacement along the load under a unit of it: bending, shear, compression and the wheel's body near the tooth. The
@@ -88,7 +109,7 @@ impl<'a> LoadedFlank<'a> {
         let direction = LoadDirection { sin: load.sin, cos: load.cos, tan: load.sin / load.cos };
         let place = (load.point.x_mm, load.point.y_mm);
         self.energy(load).compliance(direction)
-            + self.foundation.compliance(place, direction, load.width_mm, self.material.youngs_modulus_mpa())
+            + self.foundation.compliance(place, direction, load.width_mm, self.youngs_modulus_mpa)
     }
 
     fn energy(&self, load: &FlankLoad) -> Energy {
@@ -96,90 +117,24 @@ impl<'a> LoadedFlank<'a> {
         let (y_i, z_i) = (load.point.y_mm, load.z_mm);
         match &self.integrals {
             Integrals::Sound(integrals) => {
-                let integrand = of_sound(self.flank, self.material);
-                let [xx, x, one, side, shear, axial] =
-                    at(self.flank.profile, integrals, integrand, &load.point);
+                let [xx, x, one, side, shear, axial] = at(integrals, &load.point);
                 Energy {
                     ss: xx - 2.0 * x_i * x + x_i * x_i * one + shear,
                     sa: 2.0 * y_i * (x - x_i * one),
                     aa: y_i * y_i * one + z_i * z_i * side + axial,
                 }
             }
-            Integrals::Damaged(damage, integrals) => {
-                let integrand = of_damaged(self.flank, damage, self.material);
-                let all = at(self.flank.profile, integrals, integrand, &load.point);
-                let Energy { ss, sa, aa } = bending_energy(&from_fn(|n| all[n]), [x_i, y_i, z_i]);
-                let [shear, axial] = [all[BENDING], all[BENDING + 1]];
+            Integrals::Damaged(bent, others) => {
+                let Energy { ss, sa, aa } = bending_energy(&at(bent, &load.point), [x_i, y_i, z_i]);
+                let [shear, axial] = at(others, &load.point);
                 Energy { ss: ss + shear, sa, aa: aa + axial }
             }
         }
     }
 }
 
-/// What is integrated along a sound tooth.
-fn of_sound(flank: Flank<'_>, material: Material) -> impl Fn(usize) -> [f64; SOUND] {
-    let (profile, width) = (flank.profile, flank.wheel.face_width_mm);
-    let [bending, shear] = flexibilities(material);
-    // The reciprocals of W (2Y)³/12, 2Y W³/12 and 2Y W, by one division.
-    let [of_iz, of_iy, of_shear, of_area] = [
-        bending * 12.0 / (8.0 * width),
-        bending * 6.0 / width.powi(3),
-        shear * 0.6 / (2.0 * width),
-        bending / (2.0 * width),
-    ];
-    move |i| {
-        let (x, inverse) = (profile.x_mm[i] - profile.x_mm[0], 1.0 / profile.y_mm[i]);
-        let w = of_iz * inverse * inverse * inverse;
-        [w * x * x, w * x, w, of_iy * inverse, of_shear * inverse, of_area * inverse]
-    }
-}
-
-/// What is integrated along a damaged tooth.
-fn of_damaged(
-    flank: Flank<'_>,
-    damage: &DamagedTooth,
-    material: Material,
-) -> impl Fn(usize) -> [f64; DAMAGED] {
-    let (profile, width) = (flank.profile, flank.wheel.face_width_mm);
-    let [bending, shear] = flexibilities(material);
-    move |i| {
-        let section = Section::damaged(damage, profile, width, i);
-        let Section { yc_mm, zc_mm, iy_mm4, iz_mm4, iyz_mm4, .. } = section;
-        let x = profile.x_mm[i] - profile.x_mm[0];
-        let bent = bending_integrands(bending, x, [yc_mm, zc_mm], [iy_mm4, iz_mm4, iyz_mm4]);
-        let others = [shear * section.shear_per_mm2, bending / section.area_mm2];
-        from_fn(|n| if n < BENDING { bent[n] } else { others[n - BENDING] })
-    }
-}
-
-/// (mm²/N) `1/(2E)` and `1/G`.
-fn flexibilities(material: Material) -> [f64; 2] {
-    [1.0 / (2.0 * material.youngs_modulus_mpa()), 1.0 / material.shear_modulus_mpa()]
-}
-
-/// Integrals from the root up to every [`EVERY`]th profile point.
-fn marks<const N: usize>(profile: &ToothProfile, integrand: impl Fn(usize) -> [f64; N]) -> Vec<[f64; N]> {
-    let mut marks = Vec::with_capacity(profile.len().div_ceil(EVERY));
-    cumulative(&profile.x_mm, (0, [0.0; N]), profile.len() - 1, integrand, |i, integral| {
-        if i % EVERY == 0 {
-            marks.push(*integral);
-        }
-    });
-    marks
-}
-
-/// Integrals up to a place between two profile points.
-fn at<const N: usize>(
-    profile: &ToothProfile,
-    marks: &[[f64; N]],
-    integrand: impl Fn(usize) -> [f64; N],
-    point: &FlankPoint,
-) -> [f64; N] {
-    let mark = point.index / EVERY;
-    let (mut before, mut after) = ([0.0; N], [0.0; N]);
-    let from = (mark * EVERY, marks[mark]);
-    cumulative(&profile.x_mm, from, point.index + 1, integrand, |_, integral| {
-        (before, after) = (after, *integral);
-    });
-    from_fn(|n| before[n] + point.fraction * (after[n] - before[n]))
+/// Values between two profile points.
+fn at<const N: usize>(values: &[[f64; N]], point: &FlankPoint) -> [f64; N] {
+    let (before, after) = (&values[point.index], &values[point.index + 1]);
+    std::array::from_fn(|n| before[n] + point.fraction * (after[n] - before[n]))
 }

@@ -21,14 +21,9 @@ impl LoadedTooth<'_> {
         integrand: impl Fn(usize) -> [f64; N],
         at_contact: impl Fn(usize, &[f64; N]) -> T,
     ) -> Vec<T> {
-        let mut of_contact = Vec::new();
-        let (x_mm, last) = (&self.profile.x_mm, self.profile.len() - 1);
-        cumulative(x_mm, (0, [0.0; N]), last, integrand, |i, integral| {
-            if i >= self.first_contact {
-                of_contact.push(at_contact(i, integral));
-            }
-        });
-        of_contact
+        let integrals = cumulative(&self.profile.x_mm, integrand);
+        let of_contact = integrals.iter().enumerate().skip(self.first_contact);
+        of_contact.map(|(i, integral)| at_contact(i, integral)).collect()
     }
 
     /// (mm) Distance of point `i` from the root along the centre line. Integrals are taken in it rather
