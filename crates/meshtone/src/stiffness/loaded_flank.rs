@@ -3,7 +3,7 @@
 //! A load `F` at (x_i, y_i, z_i), `F_s = F cos α₁` across and `F_a = F sin α₁` along the tooth, bends it about both axes of its
 //! sections, shears and compresses it. With `M_z = F_s (x − x_i) + F_a (y_i − Yc)` and `M_y = F_a (z_i − Zc)`
 //! `U = ∫ (M_z² Iy − 2 M_z M_y Iyz + M_y² Iz)/(2E (Iy Iz − Iyz²)) + F_s² s/G + F_a²/(2EA) dx` from the root to x_i. Everything
-//! that depends on the load is moved out of the integrals (paper, Eq. 2 → 3): they are summed once up to every eighth point, and a load adds the few behind it.
+//! that depends on the load is moved out of the integrals (paper, Eq. 2 → 3): they are evaluated once for all loads.
 
 use super::energy::{Energy, bending_energy, bending_integrands, cumulative};
 use super::foundation::{Foundation, LoadDirection};
