@@ -1,4 +1,4 @@
-//! What sets that were adapted to the healthy recordings of a gearbox say about its recordings.
+//! Judges the recordings of a gearbox by sets that are adapted to its healthy ones.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -66,7 +66,10 @@ impl Adapter<'_> {
         for of in recordings.iter().filter(|of| of.label.is == HEALTHY && of.channel == channel) {
             let name = file_name(&of.path);
             match self.read(of, Part::FirstHalf) {
-                Ok(half) => (healthy.push(half), names.push(name)).0,
+                Ok(half) => {
+                    healthy.push(half);
+                    names.push(name);
+                }
                 Err(failure) => {
                     warn(format_args!("{name}, {channel}: not adapted to: {}", reason(&failure, of)));
                 }
