@@ -37,7 +37,7 @@ pub(crate) fn is_misspelling(written: &str, name: &str) -> bool {
 /// Returns whether one or two letters differ. Names of other lengths need no comparison.
 fn differs_by_two(written: &str, name: &str) -> bool {
     let [letters, own] = [written, name].map(|name| name.chars().count());
-    letters.abs_diff(own) <= 2 && strsim::damerau_levenshtein(written, name) <= 2
+    letters.abs_diff(own) <= 2 && strsim::osa_distance(written, name) <= 2
 }
 
 /// Returns whether the two names are of the same quantity in two units, which stand behind the last underscore: `speed_rpm` and

@@ -32,7 +32,7 @@ pub struct Adapt {
     /// pits@z3,outer@input:0; of a pair the gear's. [default: every kind on every wheel]
     #[arg(long, value_name = "CLASS,…", value_delimiter = ',')]
     classes: Vec<String>,
-    /// Units: pairs of wheels, or gearboxes, each with one record of every class and three healthy ones
+    /// Units, at least 16: pairs of wheels, or gearboxes, each with one record of every class and three healthy ones
     #[arg(long, value_name = "N", default_value_t = 128, value_parser = clap::value_parser!(u64).range(16..=1 << 20))]
     units: u64,
     /// Directory of the data set

@@ -121,7 +121,8 @@ pub fn adapt(
     control: &GenerateControl,
 ) -> Result<Adaptation, DatasetError> {
     let KnownMachine { scenario, recordings, estimate } = *machine;
-    let refuse = |problem: String| DatasetError::refused(problem, "see `meshtone check` about the scenario");
+    let refuse =
+        |problem: String| DatasetError::refused(problem, "`meshtone simulate` says more of the scenario");
     let train = GearTrain::of_scenario(scenario).map_err(|error| refuse(error.to_string()))?;
     let mut adapted = estimate.adapted(scenario, &train);
     shorten(&mut adapted, &train, recordings);

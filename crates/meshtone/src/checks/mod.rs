@@ -10,5 +10,5 @@ mod torques;
 
 pub(crate) use bounds::{crossings, overlap_modules, speed_factor};
 pub(crate) use figures::{Figures, SignalFigures};
-pub(crate) use settled::{WindowSums, transient_part};
+pub(crate) use settled::{WindowSums, transient_part, varying};
 pub(crate) use torques::TorqueBalance;

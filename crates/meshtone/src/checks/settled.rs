@@ -6,8 +6,18 @@ const MOST_WINDOWS: usize = 16;
 const FEWEST_WINDOWS: usize = 6;
 /// (g, N) Rms below which a signal is less than what sensors tell from nothing.
 const NOTHING: f64 = 1e-4;
+/// (-) Part of a force's mean that it varies by at least, as far as a judgement of it is concerned.
+const LEAST_VARYING: f64 = 0.05;
 /// (-) Standard errors from which on a trend is not chance.
 const CERTAIN: f64 = 4.0;
+
+/// Standard deviation of a signal, and at least a twentieth of its mean: of a force that hardly varies less is of no interest.
+///
+/// # Arguments
+/// * `mean`, `mean_square` - of the signal
+pub(crate) fn varying(mean: f64, mean_square: f64) -> f64 {
+    (mean_square - mean * mean).max(0.0).sqrt().max(LEAST_VARYING * mean.abs())
+}
 
 /// Sums over successive windows of a signal, gathered while it comes.
 #[derive(Debug, Clone, PartialEq)]
@@ -53,10 +63,10 @@ impl WindowSums {
         }
     }
 
-    /// Variance of the signal in each window.
+    /// Square of what the signal varies by in each window, see [`varying`].
     pub(crate) fn variances(&self) -> Vec<f64> {
         let count = self.length as f64;
-        self.sums.iter().map(|[sum, squares]| (squares / count - (sum / count).powi(2)).max(0.0)).collect()
+        self.sums.iter().map(|[sum, squares]| varying(sum / count, squares / count).powi(2)).collect()
     }
 
     /// Samples of a window.
@@ -131,6 +141,11 @@ mod tests {
             assert!((of(1.0) / expected - 1.0).abs() < 0.3, "{turns}: {}", of(1.0));
         }
         assert_eq!(transient_part(&[1.0; 3], 1.0), 0.0);
+        // A force that varies by a hundredth of itself at first, and by nothing later, is steady.
+        let mut force = WindowSums::new(16_000, 1000);
+        let fading = |n: u32| 100.0 + (-f64::from(n) / 2000.0).exp() * f64::from(n).sin();
+        force.add(&(0..16_000).map(fading).collect::<Vec<_>>());
+        assert_eq!(transient_part(&force.variances(), 0.5), 0.0);
         assert_eq!(WindowSums::new(3, 1000).variances(), [0.0; 0]);
     }
 }

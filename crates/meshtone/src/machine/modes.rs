@@ -50,17 +50,20 @@ impl Modes {
         let mut modes = Self::undamped(machine);
         let springs: Vec<(&Spring, Vec<usize>)> =
             machine.springs.iter().map(|spring| (spring, spring.coordinates())).collect();
+        let mut force = DVector::zeros(machine.mass.nrows());
         modes.damping_ratio = (0..modes.damping_ratio.len())
             .map(|n| {
                 let shape = modes.shapes.column(n);
-                let energy = |(spring, coordinates): &(&Spring, Vec<usize>)| {
-                    let mut force = DVector::zeros(shape.len());
-                    for &coordinate in coordinates {
-                        force.axpy(shape[coordinate], &spring.stiffness.column(coordinate), 1.0);
+                let mut energy = |(spring, coordinates): &(&Spring, Vec<usize>)| {
+                    for &row in coordinates {
+                        let of = |&column: &usize| shape[column] * spring.stiffness[(row, column)];
+                        force[row] = coordinates.iter().map(of).sum();
                     }
-                    [force.dot(&shape), spring.damping_ratio]
+                    let energy = force.dot(&shape);
+                    coordinates.iter().for_each(|&row| force[row] = 0.0);
+                    [energy, spring.damping_ratio]
                 };
-                let energies: Vec<[f64; 2]> = springs.iter().map(energy).collect();
+                let energies: Vec<[f64; 2]> = springs.iter().map(&mut energy).collect();
                 let whole: f64 = energies.iter().map(|[energy, _]| energy).sum();
                 let damped: f64 = energies.iter().map(|[energy, ratio]| ratio * energy).sum();
                 if modes.angular_frequencies[n] > 0.0 { damped / whole } else { 0.0 }

@@ -1,10 +1,13 @@
 //! Single numbers of a scenario, by the names of their keys.
 
+use std::collections::BTreeMap;
+use std::ops::Range;
 use std::sync::OnceLock;
 
-use toml::{Table, Value};
+use toml::de::{DeTable, DeValue};
+use toml::{Spanned, Value};
 
-use super::{Scenario, ScenarioError, Sensor};
+use super::{Scenario, ScenarioError};
 
 /// A number of a scenario.
 #[derive(Debug, Clone, PartialEq)]
@@ -18,33 +21,118 @@ pub struct ScenarioNumber {
     pub whole: bool,
 }
 
-fn collect(table: &Table, path: &str, numbers: &mut Vec<ScenarioNumber>) {
+/// The text of a scenario file, and the numbers that stand in it.
+#[derive(Debug, Clone)]
+struct NumberedText {
+    text: String,
+    places: Vec<NumberPlace>,
+}
+
+/// Where a number stands.
+#[derive(Debug, Clone)]
+struct NumberPlace {
+    number: ScenarioNumber,
+    /// (bytes) Of the text.
+    at: Range<usize>,
+    /// Whether it is one of the numbers of a list, as those of a speed profile are.
+    is_of_list: bool,
+}
+
+impl NumberedText {
+    /// The file of a scenario, without the profile errors given, which are large.
+    fn new(scenario: &Scenario) -> Result<Self, ScenarioError> {
+        let mut small = scenario.clone();
+        small.wheels.iter_mut().for_each(|wheel| wheel.profile_errors_mm = None);
+        let (text, mut places) = (small.to_toml(), Vec::new());
+        let root = DeTable::parse(&text).map_err(|error| ScenarioError::new("", "", error.message()))?;
+        places_in(root.get_ref(), "", &mut places);
+        Ok(Self { text, places })
+    }
+
+    fn place(&self, key: &str) -> Option<&NumberPlace> {
+        self.places.iter().find(|place| place.number.key == key)
+    }
+
+    /// The text with other numbers; none where there was nothing to put.
+    ///
+    /// # Arguments
+    /// * `numbers` - dotted key, as in the file, and value in the key's unit
+    /// * `missing` - what is said of a key at which there is no number
+    fn with_numbers(
+        &self,
+        numbers: &[(&str, f64)],
+        missing: impl Fn(&str, f64) -> Result<(), ScenarioError>,
+    ) -> Result<Option<String>, ScenarioError> {
+        let mut changes = BTreeMap::new();
+        for &(key, value) in numbers {
+            let Some(NumberPlace { number, at, .. }) = self.place(key) else {
+                missing(key, value)?;
+                continue;
+            };
+            let is_whole = number.whole && value.fract() == 0.0;
+            let written = if is_whole { Value::Integer(value as i64) } else { Value::Float(value) };
+            changes.insert(at.start, (at.clone(), written.to_string()));
+        }
+        let mut text = self.text.clone();
+        // From the end on, so that what stands before keeps its place.
+        changes.values().rev().for_each(|(at, written)| text.replace_range(at.clone(), written));
+        Ok((!changes.is_empty()).then_some(text))
+    }
+}
+
+/// Finds all numbers of a table.
+///
+/// # Arguments
+/// * `table` - of a scenario file
+/// * `path` - its dotted key, empty of the whole file
+/// * `places` - those that are found are added here
+fn places_in(table: &DeTable<'_>, path: &str, places: &mut Vec<NumberPlace>) {
     for (name, value) in table {
-        let key = if path.is_empty() { name.clone() } else { format!("{path}.{name}") };
-        match value {
-            Value::Table(table) => collect(table, &key, numbers),
-            Value::Array(entries) => {
-                let tables = entries.iter().filter_map(Value::as_table);
-                let named = tables.zip(entry_names(name, entries));
-                named.for_each(|(table, entry)| collect(table, &format!("{key}{entry}"), numbers));
+        let name = name.get_ref();
+        let key = if path.is_empty() { name.to_string() } else { format!("{path}.{name}") };
+        match value.get_ref() {
+            DeValue::Table(table) => places_in(table, &key, places),
+            DeValue::Array(entries) => {
+                for (entry, own) in entries.iter().zip(entry_names(name, entries)) {
+                    match entry.get_ref() {
+                        DeValue::Table(table) => places_in(table, &format!("{key}{own}"), places),
+                        _ => places.extend(number_of(entry, format!("{key}{own}"), true)),
+                    }
+                }
             }
-            Value::Float(value) => numbers.push(ScenarioNumber { key, value: *value, whole: false }),
-            Value::Integer(value) => numbers.push(ScenarioNumber { key, value: *value as f64, whole: true }),
-            _ => {}
+            _ => places.extend(number_of(value, key, false)),
         }
     }
 }
 
+/// A value that is a number, with its place.
+fn number_of(value: &Spanned<DeValue<'_>>, key: String, is_of_list: bool) -> Option<NumberPlace> {
+    let (written, whole) = match value.get_ref() {
+        DeValue::Integer(integer) => (integer.as_str(), true),
+        DeValue::Float(float) => (float.as_str(), false),
+        _ => return None,
+    };
+    let number = ScenarioNumber { key, value: written.parse().ok()?, whole };
+    Some(NumberPlace { number, at: value.span(), is_of_list })
+}
+
 /// What follows the name of a list in the keys of each of its entries: `[z1]` of a wheel, `[p]` of a planetary set, `[z1-z2]` of a mesh, `[input:0]` of a bearing, and
 /// the number from 0 where an entry has no name of its own; nothing of the only fault and of the only sensor.
-fn entry_names(list: &str, entries: &[Value]) -> Vec<String> {
-    let name = |entry: &Value| match list {
-        "shaft" | "wheel" | "planetary" => entry.get("name")?.as_str().map(str::to_owned),
+fn entry_names(list: &str, entries: &[Spanned<DeValue<'_>>]) -> Vec<String> {
+    let of = |entry: &Spanned<DeValue<'_>>, key: &str| {
+        Some(entry.get_ref().get(key)?.get_ref().as_str()?.to_owned())
+    };
+    let name = |entry: &Spanned<DeValue<'_>>| match list {
+        "shaft" | "wheel" | "planetary" => of(entry, "name"),
         "mesh" => {
-            let wheels = entry.get("wheels")?.as_array()?.iter().filter_map(Value::as_str);
+            let wheels = entry.get_ref().get("wheels")?.get_ref().as_array()?;
+            let wheels = wheels.iter().filter_map(|wheel| wheel.get_ref().as_str());
             Some(wheels.collect::<Vec<_>>().join("-"))
         }
-        "bearing" => Some(format!("{}:{}", entry.get("shaft")?.as_str()?, entry.get("at")?.as_float()?)),
+        "bearing" => {
+            let at: f64 = entry.get_ref().get("at")?.get_ref().as_float()?.as_str().parse().ok()?;
+            Some(format!("{}:{at}", of(entry, "shaft")?))
+        }
         _ => None,
     };
     if entries.len() == 1 && ["fault", "sensor"].contains(&list) {
@@ -72,84 +160,10 @@ pub fn names_or_numbers(names: &[Option<String>]) -> Vec<String> {
     names.iter().enumerate().map(shown).collect()
 }
 
-/// All numbers of a scenario file, by their keys.
-fn numbers_of(table: Result<Table, ScenarioError>) -> Vec<ScenarioNumber> {
-    let mut numbers = Vec::new();
-    if let Ok(table) = table {
-        collect(&table, "", &mut numbers);
-    }
-    numbers
-}
-
-/// The number at a key of a scenario file.
-fn number_at(table: Result<Table, ScenarioError>, key: &str) -> Option<f64> {
-    match at_mut(&mut table.ok()?, key)? {
-        Value::Float(number) => Some(*number),
-        Value::Integer(number) => Some(*number as f64),
-        _ => None,
-    }
-}
-
-/// Puts numbers into a scenario file. Returns its text; none where there was nothing to put.
-///
-/// # Arguments
-/// * `table` - the scenario file
-/// * `numbers` - dotted key, as in the file, and value in the key's unit
-/// * `missing` - what is said of a key at which there is no number
-fn with_numbers_that(
-    table: Result<Table, ScenarioError>,
-    numbers: &[(&str, f64)],
-    missing: impl Fn(&str, f64) -> Result<(), ScenarioError>,
-) -> Result<Option<String>, ScenarioError> {
-    let mut table = table?;
-    let mut known = false;
-    for &(key, value) in numbers {
-        match at_mut(&mut table, key) {
-            Some(place @ (Value::Integer(_) | Value::Float(_))) => {
-                let whole = matches!(place, Value::Integer(_)) && value.fract() == 0.0;
-                *place = if whole { Value::Integer(value as i64) } else { Value::Float(value) };
-                known = true;
-            }
-            _ => missing(key, value)?,
-        }
-    }
-    Ok(known.then(|| table.to_string()))
-}
-
 /// The error of a number at a key that a scenario does not have.
 fn no_such_number(key: &str, value: f64) -> Result<(), ScenarioError> {
     Err(ScenarioError::new(key, format!("{value}"), "the scenario has no number at this key")
         .with_help("`meshtone init KIND` prints every key of a kind of fault"))
-}
-
-/// Refuses a seed that is too large for a number of a table.
-fn check_seeds(seeds: impl IntoIterator<Item = (String, Option<u64>)>) -> Result<(), ScenarioError> {
-    const MOST: u64 = i64::MAX as u64;
-    let mut seeds = seeds.into_iter();
-    if let Some((key, Some(seed))) = seeds.find(|(_, seed)| seed.is_some_and(|seed| seed > MOST)) {
-        let problem =
-            format!("must be at most {MOST}, where a scenario's numbers are read or set by their keys");
-        return Err(ScenarioError::new(key, seed, problem).with_help("take a smaller seed"));
-    }
-    Ok(())
-}
-
-/// The seeds of sensors' noise, with their keys.
-fn noise_seeds<'s>(
-    sensors: impl ExactSizeIterator<Item = &'s Sensor>,
-) -> impl Iterator<Item = (String, Option<u64>)> {
-    let entries = sensors.len();
-    sensors.enumerate().map(move |(index, sensor)| {
-        let key = match entries {
-            1 => "sensor.noise_seed".to_owned(),
-            _ => format!("sensor[{index}].noise_seed"),
-        };
-        (key, sensor.noise_seed)
-    })
-}
-
-fn parsed(text: &str) -> Result<Table, ScenarioError> {
-    text.parse().map_err(|error: toml::de::Error| ScenarioError::new("", "", error.message()))
 }
 
 /// A scenario in which numbers are set many times.
@@ -165,17 +179,17 @@ fn parsed(text: &str) -> Result<Table, ScenarioError> {
 /// ```
 #[derive(Debug, Clone)]
 pub struct NumberedScenario {
-    /// As it was: not to be changed, since [`Self::table`] would not follow.
+    /// As it was: not to be changed, since [`Self::text`] would not follow.
     scenario: Scenario,
     /// Its file, made when it is needed first.
-    table: OnceLock<Result<Table, ScenarioError>>,
+    text: OnceLock<Result<NumberedText, ScenarioError>>,
 }
 
 impl NumberedScenario {
     /// # Arguments
     /// * `scenario` - in which numbers will be set
     pub fn new(scenario: Scenario) -> Self {
-        Self { scenario, table: OnceLock::new() }
+        Self { scenario, text: OnceLock::new() }
     }
 
     /// The scenario without the numbers.
@@ -191,8 +205,9 @@ impl NumberedScenario {
     /// # Errors
     /// Those of [`Scenario::with_numbers`].
     pub fn with_numbers(&self, numbers: &[(&str, f64)]) -> Result<Scenario, ScenarioError> {
-        let table = self.table.get_or_init(|| self.scenario.table()).clone();
-        self.scenario.changed(with_numbers_that(table, numbers, no_such_number)?)
+        let text =
+            self.text.get_or_init(|| NumberedText::new(&self.scenario)).as_ref().map_err(Clone::clone)?;
+        self.scenario.changed(text.with_numbers(numbers, no_such_number)?)
     }
 }
 
@@ -203,8 +218,7 @@ impl Scenario {
     /// * `key` - dotted, as in the file; of several faults, `fault[1].…` is the second, and so of sensors; entries of other lists by name,
     ///   `wheel[z1].teeth`, `mesh[z1-z2].module_mm`, `shaft[input].radius_mm`, `bearing[input:0].damping_ratio`
     ///
-    /// None where there is no such key in this scenario, or no single number at it; where a seed is more than 2⁶³ − 1, which no
-    /// number of a TOML table can be, none at any key.
+    /// None where there is no such key in this scenario, or no single number at it.
     ///
     /// ```
     /// use meshtone::scenario::{GearPair, Scenario};
@@ -214,7 +228,7 @@ impl Scenario {
     /// assert_eq!(scenario.number("fault.chip_width_mm"), None); // it is healthy
     /// ```
     pub fn number(&self, key: &str) -> Option<f64> {
-        number_at(self.table(), key)
+        Some(NumberedText::new(self).ok()?.place(key)?.number.value)
     }
 
     /// Returns the scenario with another number at a key of the scenario file.
@@ -271,12 +285,12 @@ impl Scenario {
     /// * `numbers` - dotted key, as in the file, and value in the key's unit
     ///
     /// # Errors
-    /// A value that is not allowed; a seed of more than 2⁶³ − 1.
+    /// A value that is not allowed.
     pub fn with_known_numbers(&self, numbers: &[(&str, f64)]) -> Result<Self, ScenarioError> {
-        self.changed(with_numbers_that(self.table(), numbers, |_, _| Ok(()))?)
+        self.changed(NumberedText::new(self)?.with_numbers(numbers, |_, _| Ok(()))?)
     }
 
-    /// The scenario of a text that was made of its table; itself where nothing was changed.
+    /// The scenario of a text that was made of its file; itself where nothing was changed.
     fn changed(&self, text: Option<String>) -> Result<Self, ScenarioError> {
         let Some(text) = text else { return Ok(self.clone()) };
         // A line of this text is no line that anybody has written.
@@ -284,7 +298,7 @@ impl Scenario {
         if self.wheels.iter().all(|wheel| wheel.profile_errors_mm.is_none()) {
             return Ok(changed);
         }
-        // Not part of the text's table.
+        // Not part of the text.
         for (wheel, before) in changed.wheels.iter_mut().zip(&self.wheels) {
             wheel.profile_errors_mm.clone_from(&before.profile_errors_mm);
         }
@@ -301,22 +315,8 @@ impl Scenario {
     /// assert!(teeth.whole && teeth.value == 17.0);
     /// ```
     pub fn numbers(&self) -> Vec<ScenarioNumber> {
-        numbers_of(self.table())
-    }
-
-    /// The scenario file as a table, without the profile errors given, which are large.
-    ///
-    /// # Errors
-    /// A seed that is too large for a number of the table.
-    fn table(&self) -> Result<Table, ScenarioError> {
-        let own = [
-            ("seed".to_owned(), Some(self.seed)),
-            (self.words().wheels_seed_key.to_owned(), self.wheels_seed),
-        ];
-        check_seeds(own.into_iter().chain(noise_seeds(self.sensors.iter())))?;
-        let mut small = self.clone();
-        small.wheels.iter_mut().for_each(|wheel| wheel.profile_errors_mm = None);
-        parsed(&small.to_toml())
+        let places = NumberedText::new(self).map_or_else(|_| Vec::new(), |text| text.places);
+        places.into_iter().filter(|place| !place.is_of_list).map(|place| place.number).collect()
     }
 }
 
@@ -337,23 +337,5 @@ pub fn split_key(key: &str) -> (&str, Option<&str>) {
     match key[inside..].find('.') {
         Some(dot) => (&key[..inside + dot], Some(&key[inside + dot + 1..])),
         None => (key, None),
-    }
-}
-
-/// The value at a dotted key, if there is one.
-fn at_mut<'a>(table: &'a mut Table, key: &str) -> Option<&'a mut Value> {
-    let (segment, rest) = split_key(key);
-    let (name, entry) = segment.find('[').map_or((segment, ""), |from| segment.split_at(from));
-    let mut value = table.get_mut(name)?;
-    if value.is_array() && (rest.is_some() || !entry.is_empty()) {
-        let entries = value.as_array_mut()?;
-        let place = entry_names(name, entries).iter().position(|own| own == entry)?;
-        value = entries.get_mut(place)?;
-    } else if !entry.is_empty() {
-        return None;
-    }
-    match rest {
-        Some(rest) => at_mut(value.as_table_mut()?, rest),
-        None => Some(value),
     }
 }

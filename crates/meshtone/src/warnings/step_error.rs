@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use std::ops::{Index, Range};
 
+use crate::checks::varying;
 use crate::error::Error;
 use crate::machine::{Axis, PINION_SUPPORT};
 use crate::operation::greatest_common_divisor;
@@ -18,8 +19,6 @@ use super::observer::{Observer, TurnSum, WheelTurnSums};
 
 /// (-) Part of a signal's power below which a line of its spectrum does not count.
 const LEAST_PART: f64 = 1e-6;
-/// (-) Part of a force's mean that it varies by at least, as far as its error is concerned.
-const LEAST_VARYING: f64 = 0.05;
 /// (g, N) Rms below which a signal is rounding, as where equal wheels move in opposition.
 const ROUNDING: f64 = 1e-9;
 
@@ -152,14 +151,6 @@ impl SquareSums {
         let count = self.samples.max(1) as f64;
         self.sums.iter().map(|[sum, squares]| varying(sum / count, squares / count)).collect()
     }
-}
-
-/// Standard deviation of a signal, and at least a twentieth of its mean: of a force that hardly varies less is of no interest.
-///
-/// # Arguments
-/// * `mean`, `mean_square` - of the signal
-fn varying(mean: f64, mean_square: f64) -> f64 {
-    (mean_square - mean * mean).max(0.0).sqrt().max(LEAST_VARYING * mean.abs())
 }
 
 impl Recorder for SquareSums {
