@@ -4,7 +4,7 @@ use std::sync::OnceLock;
 
 use toml::{Table, Value};
 
-use super::{Scenario, ScenarioError, Sensor};
+use super::{Scenario, ScenarioError, Sensor, entry_key};
 
 /// A number of a scenario.
 #[derive(Debug, Clone, PartialEq)]
@@ -72,84 +72,10 @@ pub fn names_or_numbers(names: &[Option<String>]) -> Vec<String> {
     names.iter().enumerate().map(shown).collect()
 }
 
-/// All numbers of a scenario file, by their keys.
-fn numbers_of(table: Result<Table, ScenarioError>) -> Vec<ScenarioNumber> {
-    let mut numbers = Vec::new();
-    if let Ok(table) = table {
-        collect(&table, "", &mut numbers);
-    }
-    numbers
-}
-
-/// The number at a key of a scenario file.
-fn number_at(table: Result<Table, ScenarioError>, key: &str) -> Option<f64> {
-    match at_mut(&mut table.ok()?, key)? {
-        Value::Float(number) => Some(*number),
-        Value::Integer(number) => Some(*number as f64),
-        _ => None,
-    }
-}
-
-/// Puts numbers into a scenario file. Returns its text; none where there was nothing to put.
-///
-/// # Arguments
-/// * `table` - the scenario file
-/// * `numbers` - dotted key, as in the file, and value in the key's unit
-/// * `missing` - what is said of a key at which there is no number
-fn with_numbers_that(
-    table: Result<Table, ScenarioError>,
-    numbers: &[(&str, f64)],
-    missing: impl Fn(&str, f64) -> Result<(), ScenarioError>,
-) -> Result<Option<String>, ScenarioError> {
-    let mut table = table?;
-    let mut known = false;
-    for &(key, value) in numbers {
-        match at_mut(&mut table, key) {
-            Some(place @ (Value::Integer(_) | Value::Float(_))) => {
-                let whole = matches!(place, Value::Integer(_)) && value.fract() == 0.0;
-                *place = if whole { Value::Integer(value as i64) } else { Value::Float(value) };
-                known = true;
-            }
-            _ => missing(key, value)?,
-        }
-    }
-    Ok(known.then(|| table.to_string()))
-}
-
 /// The error of a number at a key that a scenario does not have.
 fn no_such_number(key: &str, value: f64) -> Result<(), ScenarioError> {
     Err(ScenarioError::new(key, format!("{value}"), "the scenario has no number at this key")
         .with_help("`meshtone init KIND` prints every key of a kind of fault"))
-}
-
-/// Refuses a seed that is too large for a number of a table.
-fn check_seeds(seeds: impl IntoIterator<Item = (String, Option<u64>)>) -> Result<(), ScenarioError> {
-    const MOST: u64 = i64::MAX as u64;
-    let mut seeds = seeds.into_iter();
-    if let Some((key, Some(seed))) = seeds.find(|(_, seed)| seed.is_some_and(|seed| seed > MOST)) {
-        let problem =
-            format!("must be at most {MOST}, where a scenario's numbers are read or set by their keys");
-        return Err(ScenarioError::new(key, seed, problem).with_help("take a smaller seed"));
-    }
-    Ok(())
-}
-
-/// The seeds of sensors' noise, with their keys.
-fn noise_seeds<'s>(
-    sensors: impl ExactSizeIterator<Item = &'s Sensor>,
-) -> impl Iterator<Item = (String, Option<u64>)> {
-    let entries = sensors.len();
-    sensors.enumerate().map(move |(index, sensor)| {
-        let key = match entries {
-            1 => "sensor.noise_seed".to_owned(),
-            _ => format!("sensor[{index}].noise_seed"),
-        };
-        (key, sensor.noise_seed)
-    })
-}
-
-fn parsed(text: &str) -> Result<Table, ScenarioError> {
-    text.parse().map_err(|error: toml::de::Error| ScenarioError::new("", "", error.message()))
 }
 
 /// A scenario in which numbers are set many times.
@@ -192,7 +118,7 @@ impl NumberedScenario {
     /// Those of [`Scenario::with_numbers`].
     pub fn with_numbers(&self, numbers: &[(&str, f64)]) -> Result<Scenario, ScenarioError> {
         let table = self.table.get_or_init(|| self.scenario.table()).clone();
-        self.scenario.changed(with_numbers_that(table, numbers, no_such_number)?)
+        self.scenario.with_numbers_in(table?, numbers, no_such_number)
     }
 }
 
@@ -214,7 +140,11 @@ impl Scenario {
     /// assert_eq!(scenario.number("fault.chip_width_mm"), None); // it is healthy
     /// ```
     pub fn number(&self, key: &str) -> Option<f64> {
-        number_at(self.table(), key)
+        match at_mut(&mut self.table().ok()?, key)? {
+            Value::Float(number) => Some(*number),
+            Value::Integer(number) => Some(*number as f64),
+            _ => None,
+        }
     }
 
     /// Returns the scenario with another number at a key of the scenario file.
@@ -273,14 +203,37 @@ impl Scenario {
     /// # Errors
     /// A value that is not allowed; a seed of more than 2⁶³ − 1.
     pub fn with_known_numbers(&self, numbers: &[(&str, f64)]) -> Result<Self, ScenarioError> {
-        self.changed(with_numbers_that(self.table(), numbers, |_, _| Ok(()))?)
+        self.with_numbers_in(self.table()?, numbers, |_, _| Ok(()))
     }
 
-    /// The scenario of a text that was made of its table; itself where nothing was changed.
-    fn changed(&self, text: Option<String>) -> Result<Self, ScenarioError> {
-        let Some(text) = text else { return Ok(self.clone()) };
+    /// The scenario with numbers put into its file; itself where there was nothing to put.
+    ///
+    /// # Arguments
+    /// * `table` - its file
+    /// * `numbers` - dotted key, as in the file, and value in the key's unit
+    /// * `missing` - what is said of a key at which there is no number
+    fn with_numbers_in(
+        &self,
+        mut table: Table,
+        numbers: &[(&str, f64)],
+        missing: impl Fn(&str, f64) -> Result<(), ScenarioError>,
+    ) -> Result<Self, ScenarioError> {
+        let mut known = false;
+        for &(key, value) in numbers {
+            match at_mut(&mut table, key) {
+                Some(place @ (Value::Integer(_) | Value::Float(_))) => {
+                    let whole = matches!(place, Value::Integer(_)) && value.fract() == 0.0;
+                    *place = if whole { Value::Integer(value as i64) } else { Value::Float(value) };
+                    known = true;
+                }
+                _ => missing(key, value)?,
+            }
+        }
+        if !known {
+            return Ok(self.clone());
+        }
         // A line of this text is no line that anybody has written.
-        let mut changed = Self::from_toml(&text).map_err(|error| error.at_line(None))?;
+        let mut changed = Self::from_toml(&table.to_string()).map_err(|error| error.at_line(None))?;
         if self.wheels.iter().all(|wheel| wheel.profile_errors_mm.is_none()) {
             return Ok(changed);
         }
@@ -301,7 +254,11 @@ impl Scenario {
     /// assert!(teeth.whole && teeth.value == 17.0);
     /// ```
     pub fn numbers(&self) -> Vec<ScenarioNumber> {
-        numbers_of(self.table())
+        let mut numbers = Vec::new();
+        if let Ok(table) = self.table() {
+            collect(&table, "", &mut numbers);
+        }
+        numbers
     }
 
     /// The scenario file as a table, without the profile errors given, which are large.
@@ -309,14 +266,24 @@ impl Scenario {
     /// # Errors
     /// A seed that is too large for a number of the table.
     fn table(&self) -> Result<Table, ScenarioError> {
+        const MOST: u64 = i64::MAX as u64;
         let own = [
             ("seed".to_owned(), Some(self.seed)),
             (self.words().wheels_seed_key.to_owned(), self.wheels_seed),
         ];
-        check_seeds(own.into_iter().chain(noise_seeds(self.sensors.iter())))?;
+        let of_sensor = |(index, sensor): (usize, &Sensor)| {
+            (entry_key("sensor", index, self.sensors.len(), "noise_seed"), sensor.noise_seed)
+        };
+        let mut seeds = own.into_iter().chain(self.sensors.iter().enumerate().map(of_sensor));
+        if let Some((key, Some(seed))) = seeds.find(|(_, seed)| *seed > Some(MOST)) {
+            let problem =
+                format!("must be at most {MOST}, where a scenario's numbers are read or set by their keys");
+            return Err(ScenarioError::new(key, seed, problem).with_help("take a smaller seed"));
+        }
         let mut small = self.clone();
         small.wheels.iter_mut().for_each(|wheel| wheel.profile_errors_mm = None);
-        parsed(&small.to_toml())
+        let parsed = small.to_toml().parse();
+        parsed.map_err(|error: toml::de::Error| ScenarioError::new("", "", error.message()))
     }
 }
 
