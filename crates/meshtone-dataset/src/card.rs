@@ -81,7 +81,7 @@ fn head(set: &Finished) -> String {
     let mounted = if mountings > 1 { format!(", each mounted {mountings} times") } else { String::new() };
     let records = counted(set.records(), "simulated record");
     let units = counted(set.plan.content.units, "unit");
-    let [_, kind] = set.plan.content.base.nouns();
+    let [_, kind] = set.plan.content.base.words().nouns;
     let ([plan, scenario, ..], made_by) = (PlanFile::NAMES, meshtone::made_by());
     format!(
         "{title}{description}{records} of gear vibration from {units} ({kind}){mounted}, {channels}. Made from \
@@ -115,7 +115,7 @@ fn counts(set: &Finished) -> String {
         text +=
             &row(label, &splits.iter().map(|split| count(split).copied().unwrap_or(0)).collect::<Vec<_>>());
     }
-    let [kind, _] = plan.content.base.nouns();
+    let [kind, _] = plan.content.base.words().nouns;
     let (divided, meaning) = match plan.content.splits.by {
         SplitBy::Unit => (
             "unit",

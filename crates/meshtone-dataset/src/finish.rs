@@ -130,7 +130,7 @@ fn preview(set: &Finished, summary_columns: &SummaryColumns<'_>, to: &Destinatio
 
 /// Teeth, speed, load and severity of one record, in words.
 fn conditions(plan: &Plan, to: &Destination, shard: &str, row: usize) -> String {
-    let speed = plan.content.base.speed_key().trim_start_matches("operation.");
+    let speed = plan.content.base.words().speed_key.trim_start_matches("operation.");
     let teeth = plan.content.base.wheel_names().into_iter().map(|wheel| column_part(wheel) + "_teeth");
     let names: Vec<String> = teeth.chain([speed, "brake_torque_nm", "severity"].map(str::to_owned)).collect();
     let wanted: Vec<&str> = names.iter().map(String::as_str).collect();

@@ -54,7 +54,7 @@ impl Question<'_> {
             if speed_hz.is_finite() && (speed_hz > most * FARTHEST || speed_hz < least / FARTHEST) {
                 // Wrong pulses are seen in the recording itself.
                 let reason = reason(speed_hz / nominal_hz, prior).or_else(|| asked.mismatch.clone());
-                let (shaft, key) = (prior.base.driven_in_words(), prior.base.speed_key());
+                let (shaft, key) = (prior.base.words().driven, prior.base.words().speed_key);
                 let reason = reason.unwrap_or_else(|| match place >= self.now.len() {
                     true => format!(
                         "a healthy recording that is compared with others turns at {:.1} to {:.1} Hz; record one at their speed",
@@ -125,7 +125,7 @@ fn reason(ratio: f64, prior: &Prior) -> Option<String> {
 pub(crate) fn doubts(question: &Question, prior: &Prior) -> Vec<String> {
     let nominal_hz = prior.base.operation.pinion_speed_hz;
     let [least, most] = simulated_hz(nominal_hz, prior);
-    let (shaft, key) = (prior.base.driven_in_words(), prior.base.speed_key());
+    let (shaft, key) = (prior.base.words().driven, prior.base.words().speed_key);
     let healthy = if prior.healthy_speed_hz.is_some() { &[] } else { question.healthy };
     let speeds = question.now.iter().chain(healthy).filter_map(|asked| asked.input_speed_hz);
     let beside = speeds.filter(|speed_hz| !(least..=most).contains(speed_hz)).map(|speed_hz| {

@@ -219,7 +219,7 @@ fn unknown(
     class: Option<usize>,
 ) -> TomlError {
     let faults = class.map_or(&[][..], |class| &content.classes[class].faults);
-    let fault = kinds(faults).unwrap_or_else(|| format!("a healthy {}", content.base.nouns()[0]));
+    let fault = kinds(faults).unwrap_or_else(|| format!("a healthy {}", content.base.words().nouns[0]));
     let problem = format!("`{key}` is no number of the scenario ({fault}), so it cannot be varied");
     let error = refuse_key(placed, key, problem);
     if fault_of_severity(key, faults.len()).is_some() {

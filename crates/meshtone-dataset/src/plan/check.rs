@@ -68,7 +68,7 @@ fn refuse_given_wheels(base: &Scenario) -> ReadResult<()> {
             (key, "units draw their wheels by din_grade or iso_class")
         }
         None if base.wheels_seed.is_some() => {
-            (base.wheels_seed_key().to_owned(), "every unit has wheels of its own")
+            (base.words().wheels_seed_key.to_owned(), "every unit has wheels of its own")
         }
         None => return Ok(()),
     };

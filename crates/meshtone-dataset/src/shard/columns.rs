@@ -202,7 +202,7 @@ pub(crate) fn columns(plan: &Plan) -> Vec<Column> {
 ///
 /// They begin with what every data set has. Those of the machine, at the end, are other ones for a pair than for a gearbox.
 fn of_record(content: &Content) -> Vec<Column> {
-    let [unit, _] = content.base.nouns();
+    let [unit, _] = content.base.words().nouns;
     let splits: Vec<String> = content.splits.names().into_iter().map(str::to_owned).collect();
     let labels: Vec<String> = content.classes.iter().map(|class| class.label.clone()).collect();
     let mut columns = vec![

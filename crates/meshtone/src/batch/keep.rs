@@ -219,6 +219,15 @@ impl Recorder for SignalRecorder {
     }
 }
 
+/// As many outputs are kept as they are.
+impl<const N: usize> Recorder for [Vec<f64>; N] {
+    fn record(&mut self, block: &Block) {
+        for (index, values) in self.iter_mut().enumerate() {
+            values.extend_from_slice(block.output(index));
+        }
+    }
+}
+
 impl Keep for KeepChannels {
     type Recorder = SignalRecorder;
     type Kept = Signals;

@@ -16,8 +16,9 @@ pub(crate) struct SignalFigures {
     samples: usize,
     /// Samples that were added.
     added: usize,
-    /// Samples that are exactly 0.
+    /// Samples that are exactly 0, and that are negative.
     zeros: usize,
+    negatives: usize,
     /// The last sample, and how often the signal changed its sign from a sample to the next.
     last: f64,
     flips: usize,
@@ -26,6 +27,7 @@ pub(crate) struct SignalFigures {
     squares: f64,
     /// The sums of the first half, of the sample midway where there is one, and of the second half.
     parts: [f64; 3],
+    least: f64,
     largest: f64,
 }
 
@@ -39,11 +41,13 @@ impl SignalFigures {
             samples,
             added: 0,
             zeros: 0,
+            negatives: 0,
             last: 0.0,
             flips: 0,
             weighted: 0.0,
             squares: 0.0,
             parts: [0.0; 3],
+            least: f64::INFINITY,
             largest: 0.0,
         }
     }
@@ -70,7 +74,9 @@ impl SignalFigures {
                 self.squares += value * value;
                 sum += value;
                 self.largest = if value.abs() > self.largest { value.abs() } else { self.largest };
+                self.least = if value < self.least { value } else { self.least };
                 self.zeros += usize::from(value == 0.0);
+                self.negatives += usize::from(value < 0.0);
                 self.flips += usize::from(value * self.last < 0.0);
                 self.last = value;
             }
@@ -113,6 +119,16 @@ impl SignalFigures {
     /// (-) The part of the samples that is exactly 0.
     pub(crate) fn part_of_zeros(&self) -> f64 {
         self.zeros as f64 / self.samples.max(1) as f64
+    }
+
+    /// (-) Part of the samples that are negative.
+    pub(crate) fn part_of_negatives(&self) -> f64 {
+        self.negatives as f64 / self.samples.max(1) as f64
+    }
+
+    /// The least sample.
+    pub(crate) fn least(&self) -> f64 {
+        self.least
     }
 }
 

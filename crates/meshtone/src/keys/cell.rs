@@ -118,45 +118,14 @@ impl<S, V: KeyValue> Cell<S> for Field<S, V> {
     }
 }
 
-/// A row of a part of a section, whose keys stand among the section's own.
-struct PartCell<S, P> {
-    get: fn(&S) -> Option<&P>,
-    get_mut: fn(&mut S) -> Option<&mut P>,
+/// A value of a part of a section, or that several parts have in common: it is read into all of them, and must be the same in all.
+struct PartsCell<P, G, M> {
+    get: G,
+    get_mut: M,
     cell: Box<dyn Cell<P>>,
 }
 
-impl<S, P> Cell<S> for PartCell<S, P> {
-    fn read(&self, section: &mut S, value: &TomlValue<'_>, files: &dyn NumberFiles) -> ReadResult<()> {
-        (self.get_mut)(section).map_or(Ok(()), |part| self.cell.read(part, value, files))
-    }
-
-    fn write(&self, section: &S) -> Option<Written> {
-        (self.get)(section).and_then(|part| self.cell.write(part))
-    }
-
-    fn check(&self, section: &S, key: &str, range: &Range, unit: &str) -> Check {
-        (self.get)(section).map_or(Ok(()), |part| self.cell.check(part, key, range, unit))
-    }
-
-    fn copy(&self, from: &S, to: &mut S) {
-        if let (Some(from), Some(to)) = ((self.get)(from), (self.get_mut)(to)) {
-            self.cell.copy(from, to);
-        }
-    }
-
-    fn inside(&self, section: &S) -> Vec<KeyDescription> {
-        (self.get)(section).map(|part| self.cell.inside(part)).unwrap_or_default()
-    }
-}
-
-/// A value that several parts of a section have in common: it is read into all of them, and must be the same in all.
-struct CommonCell<S, P> {
-    get: fn(&S) -> &[P],
-    get_mut: fn(&mut S) -> &mut [P],
-    cell: Box<dyn Cell<P>>,
-}
-
-impl<S, P> Cell<S> for CommonCell<S, P> {
+impl<S, P, G: Fn(&S) -> &[P], M: Fn(&mut S) -> &mut [P]> Cell<S> for PartsCell<P, G, M> {
     fn read(&self, section: &mut S, value: &TomlValue<'_>, files: &dyn NumberFiles) -> ReadResult<()> {
         let parts = (self.get_mut)(section);
         parts.iter_mut().try_for_each(|part| self.cell.read(part, value, files))
@@ -193,8 +162,10 @@ impl<P: 'static> KeyRow<P> {
     /// # Arguments
     /// * `part` - the part
     pub(crate) fn of<S: 'static>(self, part: Field<S, P>) -> KeyRow<S> {
-        let (KeyRow { head, cell }, Field { get, get_mut }) = (self, part);
-        KeyRow { head, cell: Box::new(PartCell { get, get_mut, cell }) }
+        self.of_all(
+            move |section| (part.get)(section).map_or(&[], std::slice::from_ref),
+            move |section| (part.get_mut)(section).map_or(&mut [], std::slice::from_mut),
+        )
     }
 
     /// The row among those of a section several parts of which have the same value.
@@ -203,11 +174,11 @@ impl<P: 'static> KeyRow<P> {
     /// * `get`, `get_mut` - the parts
     pub(crate) fn of_all<S: 'static>(
         self,
-        get: fn(&S) -> &[P],
-        get_mut: fn(&mut S) -> &mut [P],
+        get: impl Fn(&S) -> &[P] + 'static,
+        get_mut: impl Fn(&mut S) -> &mut [P] + 'static,
     ) -> KeyRow<S> {
         let KeyRow { head, cell } = self;
-        KeyRow { head, cell: Box::new(CommonCell { get, get_mut, cell }) }
+        KeyRow { head, cell: Box::new(PartsCell { get, get_mut, cell }) }
     }
 }
 

@@ -16,6 +16,7 @@
 
 mod cell;
 mod check;
+mod columns;
 mod description;
 mod files;
 mod head;
@@ -29,6 +30,7 @@ mod value;
 
 pub(crate) use cell::{Field, flatten};
 pub(crate) use check::{Check, below, refuse, require};
+pub(crate) use columns::Columns;
 pub use description::{KeyDescription, KeyKind};
 pub use files::FileProblem;
 pub(crate) use files::{NoFiles, NumberFiles, load};
@@ -37,7 +39,7 @@ pub(crate) use range::Range;
 pub(crate) use row::{KeyRow, documented, row, sub_table};
 pub(crate) use table::{
     Keys, check_keys, check_rows, commented, commented_rows, describe, describe_from, describe_rows,
-    essential_rows, read_keys, read_rows, rows_but, write_keys, write_rows,
+    essential_rows, read_keys, read_rows, rows_but, rows_of, write_keys, write_rows,
 };
 pub(crate) use text::{array, comment};
 pub(crate) use value::{KeyValue, Written};

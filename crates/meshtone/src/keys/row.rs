@@ -78,6 +78,11 @@ impl<S> KeyRow<S> {
         Self { head: KeyHead { range, ..self.head }, ..self }
     }
 
+    /// The row with another key.
+    pub(crate) fn named(self, name: &'static str) -> Self {
+        Self { head: KeyHead { name, ..self.head }, ..self }
+    }
+
     /// States another kind than that of the value's type, such as the names that a text must be one of.
     pub(crate) fn kind(self, kind: KeyKind) -> Self {
         Self { head: KeyHead { kind, ..self.head }, ..self }

@@ -59,6 +59,13 @@ pub(crate) fn rows_but<S: Keys>(names: &[&str]) -> Vec<KeyRow<S>> {
     rows
 }
 
+/// The rows of a section's keys of some names, in the section's order.
+pub(crate) fn rows_of<S: Keys>(names: &[&str]) -> Vec<KeyRow<S>> {
+    let mut rows = S::rows();
+    rows.retain(|row| names.contains(&row.head.name));
+    rows
+}
+
 /// The keys and values of some rows.
 pub(super) fn written_pairs<S>(rows: &[KeyRow<S>], section: &S) -> Vec<(String, String)> {
     let mut pairs = Vec::new();

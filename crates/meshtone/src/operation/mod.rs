@@ -10,6 +10,8 @@ pub(crate) use parameters::MOST_RIPPLE;
 pub use parameters::{Operation, Profile, Ripple};
 pub use settings::{LengthKey, Solver};
 
+use std::ops::Rem;
+
 use crate::wheel::Gears;
 
 /// Pinion revolutions that are simulated, settling included, where no length is given: `2 z_g`.
@@ -65,10 +67,18 @@ impl TimeGrid {
                 (settling, samples.round() - settling)
             }
         };
+        Self::of_samples(sampling_rate_hz, samples_per_pinion_revolution, [settling, kept])
+    }
+
+    fn of_samples(
+        sampling_rate_hz: f64,
+        samples_per_pinion_revolution: usize,
+        [settling, kept]: [f64; 2],
+    ) -> Self {
         let first_kept_sample = settling.round() as usize;
         Self {
             sampling_rate_hz,
-            samples: first_kept_sample.saturating_add(kept as usize),
+            samples: first_kept_sample.saturating_add(kept.round() as usize),
             first_simulated_sample: 0,
             first_kept_sample,
             samples_per_pinion_revolution,
@@ -87,15 +97,8 @@ impl TimeGrid {
         let sampling_rate_hz = samples_per_pinion_revolution as f64 * speed_hz;
         let usual = (USUAL_S * speed_hz).ceil() * samples_per_pinion_revolution as f64;
         let kept = kept_s(operation, solver, speed_hz).map_or(usual, |kept_s| kept_s * sampling_rate_hz);
-        let first_kept_sample =
-            (kept * solver.settle_fraction / (1.0 - solver.settle_fraction)).round() as usize;
-        Self {
-            sampling_rate_hz,
-            samples: first_kept_sample.saturating_add(kept.round() as usize),
-            first_simulated_sample: 0,
-            first_kept_sample,
-            samples_per_pinion_revolution,
-        }
+        let settling = kept * solver.settle_fraction / (1.0 - solver.settle_fraction);
+        Self::of_samples(sampling_rate_hz, samples_per_pinion_revolution, [settling, kept])
     }
 
     /// (s) How long the motion settles before the kept signal, whose time starts at 0.
@@ -230,12 +233,8 @@ impl CycleGrid {
 /// ```
 /// assert_eq!(meshtone::operation::greatest_common_divisor(18, 42), 6);
 /// ```
-pub fn greatest_common_divisor(a: u32, b: u32) -> u32 {
-    let (mut x, mut y) = (a, b);
-    while y != 0 {
-        (x, y) = (y, x % y);
-    }
-    x
+pub fn greatest_common_divisor<T: Copy + Default + PartialEq + Rem<Output = T>>(a: T, b: T) -> T {
+    if b == T::default() { a } else { greatest_common_divisor(b, a % b) }
 }
 
 /// Least common multiple of two tooth counts.

@@ -1,11 +1,11 @@
 //! Speed and load.
 
-use meshtone_toml::{ReadResult, TomlTable, TomlValue};
+use meshtone_toml::{ReadResult, TomlValue};
 
 use crate::error::{ScenarioError, ScenarioWarning, WarningKind};
 use crate::interpolation::straight_between;
 use crate::keys::{
-    Check, KeyKind, KeyRow, KeyValue, Keys, NumberFiles, Range, Written, array, field, load, row, rows_but,
+    Check, Columns, KeyKind, KeyRow, KeyValue, NumberFiles, Range, Written, keys, rows, rows_but,
 };
 
 /// Drive and load.
@@ -178,108 +178,51 @@ const MOST_WANDER: f64 = 10.0;
 /// (-) Part of a length by which a profile may differ from it.
 const SAME_LENGTH: f64 = 1e-6;
 
-impl Keys for Operation {
-    const SECTION: &str = "operation";
-
-    fn start() -> Self {
-        Self::new(f64::NAN, f64::NAN)
-    }
-
-    fn rows() -> Vec<KeyRow<Self>> {
-        vec![
-            row(
-                "pinion_speed_hz",
-                "rev/s",
-                "the nominal speed of the motor and the pinion; the sampling rate is chosen for it",
-                field!(pinion_speed_hz),
-            )
-            .required_unless(SPEED_PROFILE)
-            .range(Range::positive().implausible_above(1e5)),
-            row(
-                "brake_torque_nm",
-                "N m",
-                "the nominal torque of the brake on the gear's shaft, negative where it drives",
-                field!(brake_torque_nm),
-            )
-            .required()
-            .range(TORQUE),
-            row(
-                "speed_fluctuation_hz",
-                "Hz",
-                "the amplitude of the uniform random error of every sample's speed",
-                field!(speed_fluctuation_hz),
-            )
-            .range(Range::not_negative())
-            .rule("less than the lowest speed"),
-            row(
-                "speed_wander_percent",
-                "%",
-                "the standard deviation of a slow random wander of the speed, below about 8 Hz; a recorded machine has 0.03 %",
-                field!(speed_wander_percent),
-            )
-            .range(Range::from_to(0.0, MOST_WANDER)),
-            row(
-                "torque_fluctuation_nm",
-                "N m",
-                "the amplitude of the uniform random error of every sample's torque",
-                field!(torque_fluctuation_nm),
-            )
-            .range(Range::not_negative())
-            .rule("less than the lowest torque"),
-            row(
-                "speed_profile_hz",
-                "s, Hz",
-                "the speed against time from the start of the kept signal, which ends with it, { time_s = […], value = […] }, straight between the points, constant outside \
-                 them; or { file = \"….csv\" } with the columns time_s and value",
-                field!(speed_profile_hz),
-            )
-            .otherwise("none")
-            .rule("at least 2 points, times increasing, values > 0")
-            .example("{ time_s = [0.0, 1.0], value = [40.0, 40.0] }"),
-            row("torque_profile_nm", "s, N m", "the torque against time, likewise", field!(torque_profile_nm))
-                .otherwise("none")
-                .rule("likewise, values of one sign")
-                .example("{ time_s = [0.0, 1.0], value = [10.0, 10.0] }"),
-            row(
-                "torque_ripple",
-                "",
-                "harmonics of the brake's torque over the rotation θ of a shaft, T (1 + Σ a cos(hθ + ψ))",
-                field!(torque_ripple),
-            )
-            .otherwise("none")
-            .rule("amplitudes add up to 1.2 at most")
-            .alternative("[{ order = 2.0, amplitude = 0.05 }]"),
-        ]
-    }
+keys! {
+    "operation": Operation = Self::new(f64::NAN, f64::NAN);
+    pinion_speed_hz "rev/s"
+        "the nominal speed of the motor and the pinion; the sampling rate is chosen for it"
+        .required_unless(SPEED_PROFILE).range(SPEED);
+    brake_torque_nm "N m" "the nominal torque of the brake on the gear's shaft, negative where it drives"
+        .required().range(TORQUE);
+    speed_fluctuation_hz "Hz" "the amplitude of the uniform random error of every sample's speed"
+        .range(Range::not_negative()).rule("less than the lowest speed");
+    speed_wander_percent "%"
+        "the standard deviation of a slow random wander of the speed, below about 8 Hz; a recorded machine has 0.03 %"
+        .range(Range::from_to(0.0, MOST_WANDER));
+    torque_fluctuation_nm "N m" "the amplitude of the uniform random error of every sample's torque"
+        .range(Range::not_negative()).rule("less than the lowest torque");
+    speed_profile_hz "s, Hz"
+        "the speed against time from the start of the kept signal, which ends with it, { time_s = […], value = […] }, straight between the points, constant outside them; or { file = \"….csv\" } with the columns time_s and value"
+        .otherwise("none").rule("at least 2 points, times increasing, values > 0")
+        .example("{ time_s = [0.0, 1.0], value = [40.0, 40.0] }");
+    torque_profile_nm "s, N m" "the torque against time, likewise"
+        .otherwise("none").rule("likewise, values of one sign")
+        .example("{ time_s = [0.0, 1.0], value = [10.0, 10.0] }");
+    torque_ripple ""
+        "harmonics of the brake's torque over the rotation θ of a shaft, T (1 + Σ a cos(hθ + ψ))"
+        .otherwise("none").rule("amplitudes add up to 1.2 at most")
+        .alternative("[{ order = 2.0, amplitude = 0.05 }]");
 }
 
 impl Operation {
     /// The rows where motor and brake are coupled to any two shafts.
     pub(crate) fn rows_of_shafts() -> Vec<KeyRow<Self>> {
-        let input = row(
-            "input_speed_hz",
-            "rev/s",
-            "the nominal speed of the motor and of the shaft that is coupled to it; the sampling rate is chosen for it",
-            field!(pinion_speed_hz),
-        )
-        .required_unless(SPEED_PROFILE)
-        .range(Range::positive().implausible_above(1e5));
-        let torque = row(
-            "brake_torque_nm",
-            "N m",
-            "the nominal torque of the brake on the shaft that is coupled to it, negative where it drives",
-            field!(brake_torque_nm),
-        )
-        .required()
-        .range(TORQUE);
-        let own =
-            [row("brake_inertia_kgm2", "kg m²", "the inertia of the brake", field!(brake_inertia_kgm2))
-                .range(Range::positive().implausible_above(1e9))];
-        let varying = rows_but(&["pinion_speed_hz", "brake_torque_nm"]);
-        [input, torque].into_iter().chain(varying).chain(own).collect()
+        rows! {
+            <pinion_speed_hz> input_speed_hz "rev/s"
+                "the nominal speed of the motor and of the shaft that is coupled to it; the sampling rate is chosen for it"
+                .required_unless(SPEED_PROFILE).range(SPEED);
+            brake_torque_nm "N m"
+                "the nominal torque of the brake on the shaft that is coupled to it, negative where it drives"
+                .required().range(TORQUE);
+            .. { rows_but(&["pinion_speed_hz", "brake_torque_nm"]) };
+            brake_inertia_kgm2 "kg m²" "the inertia of the brake" .range(Range::positive().implausible_above(1e9));
+        }
     }
 }
 
+/// (rev/s) Speeds that are plausible.
+const SPEED: Range = Range::positive().implausible_above(1e5);
 /// (N m) Beyond it there is no wheel: a tooth of module 100 and a metre wide breaks at less.
 const TORQUE: Range = Range::from_to(-1e9, 1e9);
 
@@ -299,29 +242,18 @@ pub struct Ripple {
     pub phase_deg: f64,
 }
 
-impl Keys for Ripple {
-    fn start() -> Self {
-        Self { shaft: None, order: f64::NAN, amplitude: f64::NAN, phase_deg: 0.0 }
-    }
-
-    fn rows() -> Vec<KeyRow<Self>> {
-        vec![
-            row("shaft", "", "the name of the shaft with whose rotation it comes", field!(shaft))
-                .otherwise("that of the brake")
-                .alternative("\"input\""),
-            row("order", "-", "the number of its periods per revolution of that shaft", field!(order))
-                .required()
-                .range(Range::positive().implausible_above(1e4)),
-            row("amplitude", "-", "its amplitude as a part of the torque", field!(amplitude))
-                .required()
-                .range(Range::from_to(0.0, MOST_RIPPLE)),
-            row("phase_deg", "°", "its phase at the start", field!(phase_deg)),
-        ]
-    }
+keys! {
+    Ripple = Self { shaft: None, order: f64::NAN, amplitude: f64::NAN, phase_deg: 0.0 };
+    shaft "" "the name of the shaft with whose rotation it comes"
+        .otherwise("that of the brake").alternative("\"input\"");
+    order "-" "the number of its periods per revolution of that shaft"
+        .required().range(Range::positive().implausible_above(1e4));
+    amplitude "-" "its amplitude as a part of the torque" .required().range(Range::from_to(0.0, MOST_RIPPLE));
+    phase_deg "°" "its phase at the start";
 }
 
 /// A quantity against time: straight lines between the points, constant outside them.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Profile {
     /// (s) Strictly increasing times from 0 on, where the kept signal starts; before it, the first value holds.
     pub time_s: Vec<f64>,
@@ -336,51 +268,26 @@ impl Profile {
     }
 }
 
-impl KeyValue for Option<Profile> {
+/// Its columns, in a table and in a file.
+const COLUMNS: Columns<2> =
+    Columns { noun: "a profile", names: ["time_s", "value"], inline: ["time_s or value", "inline values"] };
+
+impl KeyValue for Profile {
     fn read(&mut self, value: &TomlValue<'_>, files: &dyn NumberFiles) -> ReadResult<()> {
-        *self = Some(value.table()?.read(|table| profile(table, files))?);
+        let [time_s, value] = COLUMNS.read(value, |name| files.times_and_values(name))?;
+        *self = Self { time_s, value };
         Ok(())
     }
 
     fn write(&self) -> Written {
-        let lines = |profile: &Profile| {
-            Written::Lines(vec![
-                ("time_s".to_string(), array(profile.time_s.iter().copied())),
-                ("value".to_string(), array(profile.value.iter().copied())),
-            ])
-        };
-        self.as_ref().map_or(Written::Nothing, lines)
+        COLUMNS.write([&self.time_s, &self.value])
     }
 
     fn check(&self, key: &str, _range: &Range, _unit: &str) -> Check {
-        self.as_ref().map_or(Ok(()), |profile| profile.check(key))
+        self.check_points(key)
     }
 
     fn kind() -> KeyKind {
         KeyKind::Profile
-    }
-}
-
-fn profile(table: &TomlTable<'_>, files: &dyn NumberFiles) -> ReadResult<Profile> {
-    let file = table.optional("file");
-    let inline = (table.optional("time_s"), table.optional("value"));
-    match (file, inline) {
-        (Some(file), (None, None)) => {
-            let [time_s, value] = load(&file, |name| files.times_and_values(name))?;
-            Ok(Profile { time_s, value })
-        }
-        (None, (Some(time_s), Some(value))) => {
-            Ok(Profile { time_s: time_s.numbers()?, value: value.numbers()? })
-        }
-        (Some(_), _) => Err(table
-            .error("file", "given beside time_s or value; a profile has only one source")
-            .with_help("remove the file, or the inline values")),
-        (None, (time_s, _)) => {
-            let missing = if time_s.is_some() { "value" } else { "time_s" };
-            Err(table.error(
-                missing,
-                "missing; a profile is { time_s = […], value = […] } or { file = \"….csv\" }",
-            ))
-        }
     }
 }

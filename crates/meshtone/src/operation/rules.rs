@@ -55,7 +55,7 @@ fn values(profile: Option<&Profile>, key: &str, allowed: impl Fn(f64) -> bool, r
 
 impl Profile {
     /// Points whose times increase.
-    pub(super) fn check(&self, key: &str) -> Check {
+    pub(super) fn check_points(&self, key: &str) -> Check {
         let (times, values) = (self.time_s.len(), self.value.len());
         if times != values {
             let problem = format!("has {times} times and {values} values; must have as many values as times");

@@ -24,31 +24,18 @@ pub enum GearboxRig {
     Oedi623,
 }
 
+// By their names on the command line.
+meshtone_toml::named!(GearboxRig {
+    Phm2009Spur = "phm2009-spur",
+    Phm2009Helical = "phm2009-helical",
+    Uconn = "uconn",
+    Tecnalia = "tecnalia",
+    NrelGrc = "nrel-grc",
+    PlanetaryLab = "planetary-lab",
+    Oedi623 = "oedi-623",
+});
+
 impl GearboxRig {
-    /// All of them.
-    pub const ALL: [Self; 7] = [
-        Self::Phm2009Spur,
-        Self::Phm2009Helical,
-        Self::Uconn,
-        Self::Tecnalia,
-        Self::NrelGrc,
-        Self::PlanetaryLab,
-        Self::Oedi623,
-    ];
-
-    /// Its name on the command line.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Phm2009Spur => "phm2009-spur",
-            Self::Phm2009Helical => "phm2009-helical",
-            Self::Uconn => "uconn",
-            Self::Tecnalia => "tecnalia",
-            Self::NrelGrc => "nrel-grc",
-            Self::PlanetaryLab => "planetary-lab",
-            Self::Oedi623 => "oedi-623",
-        }
-    }
-
     /// The file of a rig with planetary sets, or what its two stages differ in.
     fn data(self) -> Result<RigData, String> {
         Ok(match self {

@@ -166,10 +166,7 @@ impl Scenario {
 /// ```
 pub fn gearbox_sections() -> Vec<SectionDescription> {
     let start = Scenario::start_of_shafts();
-    let of = |Section { name, rows }: Section| SectionDescription {
-        name,
-        keys: describe_rows(&rows, &start, name),
-    };
+    let of = |section: Section| section.described(&start);
     let section = |name, keys| SectionDescription { name, keys };
     let sensor: Vec<KeyRow<Sensor>> = Sensor::rows_of_shafts();
     vec![
@@ -187,7 +184,11 @@ pub fn gearbox_sections() -> Vec<SectionDescription> {
 }
 
 /// Reads a list of sections of a name.
-fn list<S: Keys>(table: &TomlTable<'_>, name: &'static str, files: &dyn NumberFiles) -> ReadResult<Vec<S>> {
+pub(super) fn list<S: Keys>(
+    table: &TomlTable<'_>,
+    name: &'static str,
+    files: &dyn NumberFiles,
+) -> ReadResult<Vec<S>> {
     let read = |table: &TomlTable<'_>| {
         let mut section = S::start();
         read_keys(&mut section, table, files).map(|()| section)

@@ -56,7 +56,7 @@ pub use meshtone_toml::ErrorKind;
 pub use planetary::{Member, MemberShifts, MemberTeeth, OfSet, Pin, PlanetarySet, Rim, SetOrders};
 pub use planetary_layout::SetLayout;
 pub use short::{SectionDescription, sections};
-pub use structure::{Shafts, Structure};
+pub use structure::{Shafts, Structure, Words};
 pub use template::{template, template_kinds, template_of_all_keys};
 pub use uncertainty::log_deviation;
 pub(crate) use validate::unknown_kind;

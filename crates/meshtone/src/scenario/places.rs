@@ -4,7 +4,7 @@ use super::layout::entry_key;
 use super::{Layout, Scenario};
 use crate::error::ScenarioError;
 use crate::machine::GearboxPlace;
-use crate::sensor::RingPlace;
+use crate::sensor::{RingPlace, check_own_name};
 
 /// (-) How far from a bearing's place, as a part of the shaft's length, a sensor that names it may be.
 const SAME_PLACE: f64 = 1e-6;
@@ -22,13 +22,7 @@ impl Scenario {
         let entries = sensors.len();
         let mut places = Vec::with_capacity(entries);
         for (index, sensor) in sensors.iter().enumerate() {
-            let name = sensor.name();
-            if let Some(other) = sensors[..index].iter().position(|other| other.name() == name) {
-                let problem = format!("is the name of sensor[{other}] already; no two have the same channel");
-                let key = entry_key("sensor", index, entries, "name");
-                let error = ScenarioError::new(key, format!("{name:?}"), problem);
-                return Err(error.with_help("give it a name of its own"));
-            }
+            check_own_name(&sensors, index)?;
             let place = match RingPlace::of(sensor.at.name()) {
                 Some(on_ring) => self.check_ring(&on_ring).map(|()| None),
                 None => self.place(sensor.at.name(), layout).map(Some),

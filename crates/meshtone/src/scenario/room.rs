@@ -63,6 +63,12 @@ impl Layout {
         (1..entries).try_for_each(|number| self.check_clear_of_other_shafts(scenario, number))
     }
 
+    /// (mm) Distance of the axes of two shafts.
+    fn apart_mm(&self, shaft: usize, other: usize) -> f64 {
+        let [a, b] = [shaft, other].map(|number| self.positions_m[number]);
+        (a[0] - b[0]).hypot(a[1] - b[1]) * 1e3
+    }
+
     /// A shaft must not reach into an earlier one.
     fn check_clear_of_other_shafts(&self, scenario: &Scenario, number: usize) -> Result<(), ScenarioError> {
         let shafts = scenario.shafts();
@@ -70,8 +76,7 @@ impl Layout {
             let both = [number, other].map(|number| &shafts[number]);
             let from_mm = both.map(|shaft| shaft.z_mm(0.0)).into_iter().fold(f64::NEG_INFINITY, f64::max);
             let until_mm = both.map(|shaft| shaft.z_mm(1.0)).into_iter().fold(f64::INFINITY, f64::min);
-            let [a, b] = [number, other].map(|number| self.positions_m[number]);
-            let apart_mm = (a[0] - b[0]).hypot(a[1] - b[1]) * 1e3;
+            let apart_mm = self.apart_mm(number, other);
             let radii_mm = both.map(|shaft| shaft.largest_radius_mm([from_mm, until_mm]));
             let is_inside =
                 |inner: usize, outer: usize| apart_mm + radii_mm[inner] <= both[outer].bore_radius_mm;
@@ -190,8 +195,7 @@ impl Layout {
             if is_beside || mesh {
                 continue;
             }
-            let [a, b] = [index, other].map(|wheel| self.positions_m[self.shaft_of_wheel[wheel]]);
-            let apart_mm = (a[0] - b[0]).hypot(a[1] - b[1]) * 1e3;
+            let apart_mm = self.apart_mm(self.shaft_of_wheel[index], self.shaft_of_wheel[other]);
             let tips_mm = [index, other].map(|wheel| self.tip_mm(scenario, wheel));
             if apart_mm >= tips_mm[0] + tips_mm[1] {
                 continue;
@@ -226,8 +230,7 @@ impl Layout {
         for (number, other) in scenario.shafts().iter().enumerate().filter(|(number, _)| *number != own) {
             let at = (z_mm - other.start_mm) / other.length_mm;
             let passes = (0.0..=1.0).contains(&at);
-            let [a, b] = [self.positions_m[own], self.positions_m[number]];
-            let apart_mm = (a[0] - b[0]).hypot(a[1] - b[1]) * 1e3;
+            let apart_mm = self.apart_mm(own, number);
             let radius_mm = other.radius_at_mm(at.clamp(0.0, 1.0));
             if passes && apart_mm < tip_mm + radius_mm {
                 let key = entry_key("wheel", index, scenario.wheels.len(), "shaft");

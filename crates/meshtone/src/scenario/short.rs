@@ -5,13 +5,13 @@ use meshtone_toml::{ReadResult, TomlTable};
 
 use super::{
     ErrorKind, Fault, Model, Operation, Quality, Rig, Scenario, ScenarioMesh, ScenarioWheel, Sensor, Solver,
-    Structure,
+    Structure, long,
 };
 use crate::damage::keys_of_every_fault;
 use crate::error_table::ErrorTable;
 use crate::keys::{
     Field, KeyDescription, KeyKind, KeyRow, Keys, NumberFiles, Range, describe, describe_rows, documented,
-    field, flatten, load, read_keys, read_rows, row,
+    field, flatten, load, read_rows, row, rows, rows_of,
 };
 use crate::wheel::quality::{DEVIATION_KEYS, file_deviations};
 use crate::wheel::rows::*;
@@ -23,6 +23,107 @@ const BRAKE_INERTIA_KGM2: f64 = 4.5e-3;
 const MESH_DAMPING_RATIO: f64 = 0.15;
 
 impl Scenario {
+    /// The keys outside of all sections.
+    fn rows_of_top_of_pair() -> Vec<KeyRow<Self>> {
+        rows! {
+            model ""
+                "the model: teeth that touch and separate, a linear mesh that is always closed, or the published code with its known errors";
+            seed ""
+                "the seed of every random draw: profile errors, fluctuations, roughness of a destroyed flank, sensors' noise";
+        }
+    }
+
+    fn rows_of_quality() -> Vec<KeyRow<Self>> {
+        type Of = ScenarioWheel;
+        let errors_row = |name| {
+            row(
+                name,
+                "mm",
+                "the profile errors, instead of a draw: 100 rows of one number a tooth",
+                field!(in Of: profile_errors_mm),
+            )
+            .otherwise("none")
+            .rule("100 × teeth, each below the module")
+            .alternative("[ 100 rows of one number a tooth ]")
+        };
+        rows! {
+            = { both(
+                din_grade_row(
+                    "the grade of DIN 3961 of the deviations, 1 (best) to 12; 0: ideal teeth",
+                    field!(in Of: din_grade),
+                )
+                .range(Range::from_to(0.0, 12.0).message(
+                    "must be a whole number from 0 to 12: a grade of DIN 3961, from 1 (best) to 12, or 0 for ideal teeth",
+                )),
+            ) };
+            <wheels_seed> seed "" "the seed of the wheels alone, for several scenarios of the same wheels"
+                .otherwise("the scenario's `seed`").alternative("2");
+            = { both(
+                row(
+                    "iso_class",
+                    "",
+                    "the class of ISO 1328-1:2013 of the deviations, 1 (best) to 11, instead of din_grade; 0: none",
+                    field!(in Of: iso_class),
+                )
+                .range(Range::from_to(0.0, 11.0).message(
+                    "must be a whole number from 0 to 11: a class of ISO 1328-1:2013, from 1 (best) to 11, or 0 for none",
+                )),
+            ) };
+            .. { rows_of(&["tooth_share", "pitch_share", "run_out_share", "helix_share"]).into_iter().map(both) };
+            = { documented(
+                "errors_file",
+                "an .npz with the profile errors, instead of a draw, as `meshtone wheels` writes it; its entries are the keys below",
+                KeyKind::File,
+            )
+            .otherwise("none")
+            .alternative("\"wheels.npz\"") };
+            .. { [errors_row(ERROR_KEYS[0]).of(PINION), errors_row(ERROR_KEYS[1]).of(GEAR)] };
+            .. { deviation_rows(DEVIATION_KEYS[0]).into_iter().map(|row| row.of(PINION)) };
+            .. { deviation_rows(DEVIATION_KEYS[1]).into_iter().map(|row| row.of(GEAR)) };
+        }
+    }
+
+    fn rows_of_rig() -> Vec<KeyRow<Self>> {
+        type Of = ScenarioWheel;
+        let mut of_rig = Rig::rows().into_iter().map(|row| row.of(RIG));
+        let inertia = |name, example| {
+            row(name, "", "the wheel's mass and inertias, any of the three", field!(in Of: inertia))
+                .otherwise("those of a solid disc of pitch radius")
+                .alternative(example)
+        };
+        let unbalance = |name| {
+            row(name, "", "the unbalance of the wheel and its shaft", field!(in Of: unbalance))
+                .otherwise("none")
+                .alternative("{ g_mm = 50.0 }")
+        };
+        rows! {
+            .. { of_rig.by_ref().take(2) };
+            (operation) brake_inertia_kgm2 "kg m²" "the inertia of the brake"
+                .range(Range::positive().implausible_above(1e9));
+            .. { of_rig.by_ref().take(1) };
+            = { both(
+                row("eccentricity_mm", "mm", "the eccentricity of both wheels", field!(in Of: eccentricity_mm))
+                    .range(Range::not_negative())
+                    .rule("less than the module"),
+            ) };
+            = { misalignment_row(field!(in ScenarioMesh: misalignment_um)).of(MESH) };
+            .. { of_rig.by_ref().take(2) };
+            = { inertia(
+                "pinion_inertia",
+                "{ mass_kg = 0.24, polar_inertia_kgm2 = 7.8e-5, transverse_inertia_kgm2 = 4.4e-5 }",
+            )
+            .of(PINION) };
+            = { inertia(
+                "gear_inertia",
+                "{ mass_kg = 1.20, polar_inertia_kgm2 = 1.95e-3, transverse_inertia_kgm2 = 1.0e-3 }",
+            )
+            .of(GEAR) };
+            .. { [unbalance("pinion_unbalance").of(PINION), unbalance("gear_unbalance").of(GEAR)] };
+            .. { of_rig };
+            = { mesh_damping_row(field!(in ScenarioMesh: damping_ratio)).named("mesh_damping_ratio").of(MESH) };
+        }
+    }
+
     /// A pair with every key at its default, and those without one at whatever is refused.
     pub(super) fn start_of_rig() -> Self {
         let quality = Quality::default();
@@ -80,6 +181,11 @@ impl Section {
             read_rows(&self.rows, scenario, table, files)
         })
     }
+
+    /// Its keys, with the defaults of a scenario.
+    pub(super) fn described(self, start: &Scenario) -> SectionDescription {
+        SectionDescription { name: self.name, keys: describe_rows(&self.rows, start, self.name) }
+    }
 }
 
 const PINION: Field<Scenario, ScenarioWheel> = Field::new(
@@ -98,26 +204,12 @@ const RIG: Field<Scenario, Rig> = Field::new(Scenario::rig, Scenario::rig_mut);
 
 /// The row of a key of both wheels.
 fn both(row: KeyRow<ScenarioWheel>) -> KeyRow<Scenario> {
-    row.of_all(|scenario| &scenario.wheels, |scenario| &mut scenario.wheels)
+    row.of_all::<Scenario>(|scenario| &scenario.wheels, |scenario| &mut scenario.wheels)
 }
 
 /// The keys above the sections.
 pub(super) fn top() -> Section {
-    let rows = vec![
-        row(
-            "model",
-            "",
-            "the model: teeth that touch and separate, a linear mesh that is always closed, or the published code with its known errors",
-            field!(in Scenario: model),
-        ),
-        row(
-            "seed",
-            "",
-            "the seed of every random draw: profile errors, fluctuations, roughness of a destroyed flank, sensors' noise",
-            field!(in Scenario: seed),
-        ),
-    ];
-    Section { name: "", rows }
+    Section { name: "", rows: Scenario::rows_of_top_of_pair() }
 }
 
 /// `[gears]`: the teeth of both wheels.
@@ -175,187 +267,38 @@ pub(super) fn operation() -> Section {
 }
 
 /// The rows of a wheel's deviations that are given beside the profiles.
-fn deviation_rows([pitch, run_out, phase, helix]: [&'static str; 4]) -> [KeyRow<ScenarioWheel>; 4] {
-    [
-        row(
-            pitch,
-            "µm",
-            "the working flanks' cumulative pitch deviations along the pitch circle, positive where \
-                 metal is added; they are added to given profile errors",
-            field!(in ScenarioWheel: deviations.cumulative_pitch_um),
-        )
-        .otherwise("drawn, or none beside given profile errors")
-        .rule("one a tooth, each below the module")
-        .alternative("[ one number a tooth ]"),
-        row(
-            run_out,
-            "µm",
-            "the run-out F_r, of which the deviation is F_r/2 sin(θ + φ)",
-            field!(in ScenarioWheel: deviations.run_out_um),
-        )
-        .otherwise("drawn, or none beside given profile errors or pitches, which contain it")
-        .range(Range::not_negative().implausible_above(1e4))
-        .alternative("0.0"),
-        row(
-            phase,
-            "rad",
-            "its phase φ; θ counts from where the wheel's first tooth enters contact",
-            field!(in ScenarioWheel: deviations.run_out_phase_rad),
-        )
-        .otherwise("drawn, or 0 beside given profile errors")
-        .alternative("0.0"),
-        row(
-            helix,
-            "µm",
-            "the helix slope deviation over the face width, positive where metal is added towards positive z",
-            field!(in ScenarioWheel: deviations.helix_slope_um),
-        )
-        .otherwise("drawn, or none beside given profile errors")
-        .range(Range::from_to(-1e3, 1e3))
-        .alternative("0.0"),
-    ]
+fn deviation_rows([pitch, run_out, phase, helix]: [&'static str; 4]) -> Vec<KeyRow<ScenarioWheel>> {
+    let pitches = row(
+        pitch,
+        "µm",
+        "the working flanks' cumulative pitch deviations along the pitch circle, positive where \
+         metal is added; they are added to given profile errors",
+        field!(in ScenarioWheel: deviations.cumulative_pitch_um),
+    )
+    .otherwise("drawn, or none beside given profile errors")
+    .rule("one a tooth, each below the module")
+    .alternative("[ one number a tooth ]");
+    let names = [
+        (run_out, "drawn, or none beside given profile errors or pitches, which contain it"),
+        (phase, "drawn, or 0 beside given profile errors"),
+        (helix, "drawn, or none beside given profile errors"),
+    ];
+    let of_wheel = rows_of(&["run_out_um", "run_out_phase_rad", "helix_slope_um"]).into_iter().zip(names);
+    let others = of_wheel
+        .map(|(row, (name, otherwise)): (KeyRow<ScenarioWheel>, _)| row.named(name).otherwise(otherwise));
+    [pitches].into_iter().chain(others).collect()
 }
 
 const ERROR_KEYS: [&str; 2] = ["pinion_profile_errors_mm", "gear_profile_errors_mm"];
 
 /// `[quality]`: how well both wheels are made.
 pub(super) fn quality() -> Section {
-    type Of = ScenarioWheel;
-    let share = |name, meaning, field| both(row(name, "-", meaning, field).range(Range::from_to(0.0, 1.0)));
-    let errors_row = |name| {
-        row(
-            name,
-            "mm",
-            "the profile errors, instead of a draw: 100 rows of one number a tooth",
-            field!(in Of: profile_errors_mm),
-        )
-        .otherwise("none")
-        .rule("100 × teeth, each below the module")
-        .alternative("[ 100 rows of one number a tooth ]")
-    };
-    let rows: Vec<KeyRow<Scenario>> = vec![
-            both(row(
-                "din_grade",
-                "",
-                "the grade of DIN 3961 of the deviations, 1 (best) to 12; 0: ideal teeth",
-                field!(in Of: din_grade),
-            )
-            .range(Range::from_to(0.0, 12.0).message(
-                "must be a whole number from 0 to 12: a grade of DIN 3961, from 1 (best) to 12, or 0 for ideal teeth",
-            ))),
-            row(
-                "seed",
-                "",
-                "the seed of the wheels alone, for several scenarios of the same wheels",
-                field!(in Scenario: wheels_seed),
-            )
-            .otherwise("the scenario's `seed`")
-            .alternative("2"),
-            both(row(
-                "iso_class",
-                "",
-                "the class of ISO 1328-1:2013 of the deviations, 1 (best) to 11, instead of din_grade; 0: none",
-                field!(in Of: iso_class),
-            )
-            .range(Range::from_to(0.0, 11.0).message(
-                "must be a whole number from 0 to 11: a class of ISO 1328-1:2013, from 1 (best) to 11, or 0 for none",
-            ))),
-            share(
-                "tooth_share",
-                "the part of the tolerances of profile slope and form that each tooth has of its own; the rest is \
-                 common to a wheel's teeth",
-                field!(in Of: tooth_share),
-            ),
-            share(
-                "pitch_share",
-                "a wheel's largest single pitch deviation over its tolerance f_p",
-                field!(in Of: pitch_share),
-            ),
-            share("run_out_share", "a wheel's run-out over its tolerance F_r", field!(in Of: run_out_share)),
-            share(
-                "helix_share",
-                "a wheel's largest helix slope deviation, of either sign, over its tolerance f_Hβ",
-                field!(in Of: helix_share),
-            ),
-            documented(
-                "errors_file",
-                "an .npz with the profile errors, instead of a draw, as `meshtone wheels` writes it; its entries are \
-                 the keys below",
-                KeyKind::File,
-            )
-            .otherwise("none")
-            .alternative("\"wheels.npz\""),
-            errors_row(ERROR_KEYS[0]).of(PINION),
-            errors_row(ERROR_KEYS[1]).of(GEAR),
-        ]
-        .into_iter()
-        .chain(deviation_rows(DEVIATION_KEYS[0]).map(|row| row.of(PINION)))
-        .chain(deviation_rows(DEVIATION_KEYS[1]).map(|row| row.of(GEAR)))
-        .collect();
-
-    Section { name: "quality", rows }
+    Section { name: "quality", rows: Scenario::rows_of_quality() }
 }
 
 /// `[rig]`: bearings, shafts, brake and wheel bodies.
 pub(super) fn rig() -> Section {
-    type Of = ScenarioWheel;
-    const DISC: &str = "those of a solid disc of pitch radius";
-    let mut of_rig = Rig::rows().into_iter().map(|row| row.of(RIG));
-    let mut rows: Vec<KeyRow<Scenario>> = of_rig.by_ref().take(2).collect();
-    rows.push(
-        row(
-            "brake_inertia_kgm2",
-            "kg m²",
-            "the inertia of the brake",
-            field!(in Scenario: operation.brake_inertia_kgm2),
-        )
-        .range(Range::positive().implausible_above(1e9)),
-    );
-    rows.extend(of_rig.by_ref().take(1));
-    rows.push(both(
-        row("eccentricity_mm", "mm", "the eccentricity of both wheels", field!(in Of: eccentricity_mm))
-            .range(Range::not_negative())
-            .rule("less than the module"),
-    ));
-    rows.push(misalignment_row(field!(in ScenarioMesh: misalignment_um)).of(MESH));
-    rows.extend(of_rig.by_ref().take(2));
-    let inertia = |name, example| {
-        row(name, "", "the wheel's mass and inertias, any of the three", field!(in Of: inertia))
-            .otherwise(DISC)
-            .alternative(example)
-    };
-    let unbalance = |name| {
-        row(name, "", "the unbalance of the wheel and its shaft", field!(in Of: unbalance))
-            .otherwise("none")
-            .alternative("{ g_mm = 50.0 }")
-    };
-    rows.extend([
-        inertia(
-            "pinion_inertia",
-            "{ mass_kg = 0.24, polar_inertia_kgm2 = 7.8e-5, transverse_inertia_kgm2 = 4.4e-5 }",
-        )
-        .of(PINION),
-        inertia(
-            "gear_inertia",
-            "{ mass_kg = 1.20, polar_inertia_kgm2 = 1.95e-3, transverse_inertia_kgm2 = 1.0e-3 }",
-        )
-        .of(GEAR),
-        unbalance("pinion_unbalance").of(PINION),
-        unbalance("gear_unbalance").of(GEAR),
-    ]);
-    rows.extend(of_rig);
-    rows.push(
-        row(
-            "mesh_damping_ratio",
-            "-",
-            "the damping of teeth in contact, relative to the critical damping of the wheels' rotation \
-             on the mean mesh stiffness",
-            field!(in ScenarioMesh: damping_ratio),
-        )
-        .range(Range::below_one().help("measured ratios are 0.03 to 0.17"))
-        .of(MESH),
-    );
-    Section { name: "rig", rows }
+    Section { name: "rig", rows: Scenario::rows_of_rig() }
 }
 
 /// `[solver]`: sampling, length, settling and initial state.
@@ -376,12 +319,7 @@ pub(super) fn read(root: &TomlTable<'_>, files: &dyn NumberFiles) -> ReadResult<
     })?;
     scenario.faults = Fault::list_from_table(root)?;
     rig().read(&mut scenario, root, files)?;
-    let sensor = |table: &TomlTable<'_>| {
-        let mut sensor = Sensor::start();
-        read_keys(&mut sensor, table, files).map(|()| sensor)
-    };
-    scenario.sensors =
-        root.tables("sensor")?.into_iter().map(|table| table.read(sensor)).collect::<ReadResult<_>>()?;
+    scenario.sensors = long::list(root, "sensor", files)?;
     solver().read(&mut scenario, root, files)?;
     Ok(scenario)
 }
@@ -458,10 +396,7 @@ pub struct SectionDescription {
 /// ```
 pub fn sections() -> Vec<SectionDescription> {
     let start = Scenario::start_of_rig();
-    let of = |Section { name, rows }: Section| SectionDescription {
-        name,
-        keys: describe_rows(&rows, &start, name),
-    };
+    let of = |section: Section| section.described(&start);
     let section = |name, keys| SectionDescription { name, keys };
     vec![
         of(top()),

@@ -32,17 +32,19 @@ pub struct Shafts {
 }
 
 /// What a structure is called, and where its keys stand.
-pub(crate) struct Words {
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Words {
     /// Key of the nominal speed.
-    pub(crate) speed_key: &'static str,
-    /// What is driven, in words.
-    pub(crate) driven: &'static str,
-    /// What it is, one and several.
-    pub(crate) nouns: [&'static str; 2],
+    pub speed_key: &'static str,
+    /// What the motor drives: `the pinion`, `the input`.
+    pub driven: &'static str,
+    /// What it is, one and several: a pair of wheels, gearboxes.
+    pub nouns: [&'static str; 2],
     /// Key of the seed of the wheels' deviations.
-    pub(crate) wheels_seed_key: &'static str,
+    pub wheels_seed_key: &'static str,
     /// What is said of a motion that grows.
-    pub(crate) against_growth: &'static str,
+    pub against_growth: &'static str,
 }
 
 impl Scenario {
@@ -181,7 +183,7 @@ impl Scenario {
     }
 
     /// What messages call the structure's keys.
-    pub(crate) fn words(&self) -> Words {
+    pub fn words(&self) -> Words {
         match &self.structure {
             Structure::Rig(_) => Words {
                 speed_key: "operation.pinion_speed_hz",
@@ -224,21 +226,6 @@ impl Scenario {
         }
     }
 
-    /// Key of the nominal speed.
-    pub fn speed_key(&self) -> &'static str {
-        self.words().speed_key
-    }
-
-    /// What it is, one and several: a pair of wheels, gearboxes.
-    pub fn nouns(&self) -> [&'static str; 2] {
-        self.words().nouns
-    }
-
-    /// Key of the seed of the wheels' deviations.
-    pub fn wheels_seed_key(&self) -> &'static str {
-        self.words().wheels_seed_key
-    }
-
     /// What a shaft is coupled to.
     ///
     /// # Arguments
@@ -252,11 +239,6 @@ impl Scenario {
                 shaft.map_or(Coupled::Nothing, |shaft| shaft.couples_to)
             }
         }
-    }
-
-    /// What the motor drives, in words: `the pinion`, `the input`.
-    pub fn driven_in_words(&self) -> &'static str {
-        self.words().driven
     }
 
     /// A shaft in words: `the gear's shaft`, `shaft output`.

@@ -3,17 +3,17 @@
 use std::f64::consts::PI;
 
 use meshtone_fourier::Complex64;
-use meshtone_toml::{ReadResult, TomlTable, TomlValue};
+use meshtone_toml::{ReadResult, TomlValue};
 
 use super::parameters::finite_and_not_negative;
 use crate::error::ScenarioError;
-use crate::keys::{Check, KeyKind, KeyValue, NumberFiles, Range, Written, array, load, require};
+use crate::keys::{Check, Columns, KeyKind, KeyValue, NumberFiles, Range, Written, require};
 
 /// A frequency response: magnitude and phase over frequency.
 ///
 /// Between the frequencies both go along straight lines, the phase after unwrapping: from one frequency to the next it changes
 /// by 180° at most. Outside them nothing passes.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct FrequencyResponse {
     /// (Hz) Increasing frequencies, from 0 on.
     pub frequency_hz: Vec<f64>,
@@ -24,20 +24,24 @@ pub struct FrequencyResponse {
 }
 
 /// Its columns, in a table and in a file.
-const COLUMNS: [&str; 3] = ["frequency_hz", "magnitude", "phase_deg"];
+const COLUMNS: Columns<3> = Columns {
+    noun: "a frequency response",
+    names: ["frequency_hz", "magnitude", "phase_deg"],
+    inline: ["numbers of its own", "numbers"],
+};
 
 impl FrequencyResponse {
     fn columns(&self) -> [&[f64]; 3] {
         [&self.frequency_hz, &self.magnitude, &self.phase_deg]
     }
 
-    fn check(&self, key: &str) -> Check {
+    fn check_points(&self, key: &str) -> Check {
         let length = self.frequency_hz.len();
         if length < 2 {
             let problem = format!("has {length} rows; must have at least 2");
             return Err(ScenarioError::new(key, "", problem));
         }
-        for (name, column) in COLUMNS.into_iter().zip(self.columns()) {
+        for (name, column) in COLUMNS.names.into_iter().zip(self.columns()) {
             if column.len() != length {
                 let problem =
                     format!("has {} numbers; must have as many as frequency_hz, {length}", column.len());
@@ -110,53 +114,23 @@ fn unwrapped_rad(phase_deg: &[f64]) -> Vec<f64> {
     phase_deg.iter().map(unwrap).collect()
 }
 
-impl KeyValue for Option<FrequencyResponse> {
+impl KeyValue for FrequencyResponse {
     fn read(&mut self, value: &TomlValue<'_>, files: &dyn NumberFiles) -> ReadResult<()> {
-        *self = Some(value.table()?.read(|table| frequency_response(table, files))?);
+        let [frequency_hz, magnitude, phase_deg] =
+            COLUMNS.read(value, |name| files.frequencies_magnitudes_phases(name))?;
+        *self = Self { frequency_hz, magnitude, phase_deg };
         Ok(())
     }
 
     fn write(&self) -> Written {
-        let lines = |response: &FrequencyResponse| {
-            let columns = COLUMNS.into_iter().zip(response.columns());
-            let line = |(name, column): (&str, &[f64])| (name.to_string(), array(column.iter().copied()));
-            Written::Lines(columns.map(line).collect())
-        };
-        self.as_ref().map_or(Written::Nothing, lines)
+        COLUMNS.write(self.columns())
     }
 
     fn check(&self, key: &str, _range: &Range, _unit: &str) -> Check {
-        self.as_ref().map_or(Ok(()), |response| response.check(key))
+        self.check_points(key)
     }
 
     fn kind() -> KeyKind {
         KeyKind::FrequencyResponse
-    }
-}
-
-fn frequency_response(table: &TomlTable<'_>, files: &dyn NumberFiles) -> ReadResult<FrequencyResponse> {
-    let file = table.optional("file");
-    let columns = COLUMNS.map(|name| table.optional(name));
-    let response = |[frequency_hz, magnitude, phase_deg]: [Vec<f64>; 3]| FrequencyResponse {
-        frequency_hz,
-        magnitude,
-        phase_deg,
-    };
-    match (file, columns) {
-        (Some(file), [None, None, None]) => {
-            load(&file, |name| files.frequencies_magnitudes_phases(name)).map(response)
-        }
-        (Some(_), _) => Err(table
-            .error("file", "given beside numbers of its own; a frequency response has only one source")
-            .with_help("remove the file, or the numbers")),
-        (None, [Some(frequency), Some(magnitude), Some(phase)]) => {
-            Ok(response([frequency.numbers()?, magnitude.numbers()?, phase.numbers()?]))
-        }
-        (None, columns) => {
-            let missing = COLUMNS.into_iter().zip(&columns).find(|(_, column)| column.is_none());
-            let what = "missing; a frequency response is { frequency_hz = […], magnitude = […], phase_deg = […] } \
-                        or { file = \"….csv\" }";
-            Err(table.error(missing.map_or("file", |(name, _)| name), what))
-        }
     }
 }

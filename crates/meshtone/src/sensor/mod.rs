@@ -22,7 +22,7 @@ pub use frequency_response::FrequencyResponse;
 pub use measure::{Measurement, measure};
 pub use noise::{add_recorded_noise, add_white_noise, standard_deviation_of_channel};
 pub use parameters::{ResponseInput, Sensor, SensorDirection, SensorPlace};
-pub(crate) use parameters::{RingPlace, check_sensors};
+pub(crate) use parameters::{RingPlace, check_own_name, check_sensors};
 pub use passage::Passage;
 pub use path::SensorPath;
 pub use path_ripple::PathRipple;
@@ -67,33 +67,28 @@ fn speed_hz(wheel: &'static str) -> Output {
     Output::Velocity { place: wheel.into(), axis: Axis::Rotation, factor: 1.0 / TAU }
 }
 
-impl ChannelKind {
-    /// All of them, in the order of files.
-    pub const ALL: [Self; 6] = [
-        Self::Horizontal,
-        Self::Vertical,
-        Self::Axial,
-        Self::PinionShaftSpeed,
-        Self::GearShaftSpeed,
-        Self::MeshForce,
-    ];
+// In the order of files, each with its unit at the end of its name, the same wherever a channel is named.
+meshtone_toml::named!(ChannelKind {
+    Horizontal = "horizontal_g",
+    Vertical = "vertical_g",
+    Axial = "axial_g",
+    PinionShaftSpeed = "pinion_shaft_speed_hz",
+    GearShaftSpeed = "gear_shaft_speed_hz",
+    MeshForce = "mesh_force_n",
+});
 
+impl ChannelKind {
     /// Channels that an accelerometer would show.
     pub const ACCELERATIONS: [Self; 3] = [Self::Horizontal, Self::Vertical, Self::Axial];
 
-    /// Name with the unit at its end, the same wherever a channel is named.
-    pub fn name(self) -> &'static str {
-        self.row().0
-    }
-
     /// What the signal is of.
     pub fn source(self) -> SignalSource {
-        self.row().1
+        self.row().0
     }
 
     /// Meaning, in a few words.
     pub fn meaning(self) -> &'static str {
-        self.row().2
+        self.row().1
     }
 
     /// Unit.
@@ -101,31 +96,22 @@ impl ChannelKind {
         self.source().unit()
     }
 
-    fn row(self) -> (&'static str, SignalSource, &'static str) {
+    fn row(self) -> (SignalSource, &'static str) {
         use SensorDirection::{Axial, Horizontal, Vertical};
         use SignalSource::{MeshForce, ShaftSpeed, Supports};
         match self {
             Self::Horizontal => (
-                "horizontal_g",
                 Supports(Horizontal),
                 "horizontal acceleration of the support of the pinion's shaft, over 9.81 m/s²; under linear and published the sum of both wheels'",
             ),
             Self::Vertical => (
-                "vertical_g",
                 Supports(Vertical),
                 "vertical acceleration of the support of the pinion's shaft, over 9.81 m/s²; under linear and published the sum of both wheels'",
             ),
-            Self::Axial => {
-                ("axial_g", Supports(Axial), "sum of both wheels' axial accelerations, over 9.81 m/s²")
-            }
-            Self::PinionShaftSpeed => {
-                ("pinion_shaft_speed_hz", ShaftSpeed(0), "revolutions of the pinion per second")
-            }
-            Self::GearShaftSpeed => {
-                ("gear_shaft_speed_hz", ShaftSpeed(1), "revolutions of the gear per second")
-            }
+            Self::Axial => (Supports(Axial), "sum of both wheels' axial accelerations, over 9.81 m/s²"),
+            Self::PinionShaftSpeed => (ShaftSpeed(0), "revolutions of the pinion per second"),
+            Self::GearShaftSpeed => (ShaftSpeed(1), "revolutions of the gear per second"),
             Self::MeshForce => (
-                "mesh_force_n",
                 MeshForce(0),
                 "force along the line of action; negative: coast flanks touch, or the linear mesh pulls where real teeth would separate",
             ),

@@ -360,14 +360,18 @@ fn check_name(name: &str) -> Check {
 pub(crate) fn check_sensors(sensors: &[Sensor], model: Model) -> Check {
     for (index, sensor) in sensors.iter().enumerate() {
         sensor.check(model).map_err(|error| error.in_entry("sensor", index, sensors.len()))?;
-        let name = sensor.name();
-        if let Some(other) = sensors[..index].iter().position(|other| other.name() == name) {
-            let problem = format!("is the name of sensor[{other}] already; no two have the same channel");
-            return Err(ScenarioError::new(format!("sensor[{index}].name"), format!("{name:?}"), problem)
-                .with_help("give it a name of its own"));
-        }
+        check_own_name(sensors, index)?;
     }
     Ok(())
+}
+
+/// Refuses a sensor with the name of one before it.
+pub(crate) fn check_own_name(sensors: &[Sensor], index: usize) -> Check {
+    let name = sensors[index].name();
+    let Some(other) = sensors[..index].iter().position(|other| other.name() == name) else { return Ok(()) };
+    let problem = format!("is the name of sensor[{other}] already; no two have the same channel");
+    Err(ScenarioError::new(format!("sensor[{index}].name"), format!("{name:?}"), problem)
+        .with_help("give it a name of its own"))
 }
 
 /// (-) A number of a frequency response must be finite, and must not be less than 0.

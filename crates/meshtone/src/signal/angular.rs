@@ -226,16 +226,6 @@ fn places(
 }
 
 fn nyquist_order(phase: &ShaftPhase) -> f64 {
-    /// Maxima that are found side by side.
-    const LANES: usize = 8;
-    let larger = |a: f64, b: f64| if b > a { b } else { a };
-    let mut quickest = [0.0; LANES];
-    for steps in phase.revolutions.windows(LANES + 1).step_by(LANES) {
-        for lane in 0..LANES {
-            quickest[lane] = larger(quickest[lane], steps[lane + 1] - steps[lane]);
-        }
-    }
-    let last = phase.revolutions.len().saturating_sub(LANES + 1);
-    let rest = phase.revolutions[last..].windows(2).map(|pair| pair[1] - pair[0]);
-    0.5 / rest.chain(quickest).fold(0.0, larger)
+    let steps = phase.revolutions.windows(2).map(|pair| pair[1] - pair[0]);
+    0.5 / steps.fold(0.0, f64::max)
 }

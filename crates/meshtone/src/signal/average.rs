@@ -80,7 +80,7 @@ impl SynchronousAverage {
 /// # Ok::<(), meshtone::signal::SignalError>(())
 /// ```
 pub fn synchronous_average(angular: &AngularSignal) -> Result<SynchronousAverage, SignalError> {
-    average_of(angular, &angular.values)
+    average_of(angular, &angular.values).of_enough_revolutions()
 }
 
 /// Averages over segments of equally many revolutions: records in the order of time out of one long recording.
@@ -114,14 +114,15 @@ pub fn segmented_averages(
         return Err(SignalError::TooFewRevolutions { revolutions: there_are as f64, needed: revolutions });
     }
     let segment = angular.points_per_revolution * revolutions;
-    angular.values.chunks_exact(segment).map(|values| average_of(angular, values)).collect()
+    let segments = angular.values.chunks_exact(segment);
+    segments.map(|values| average_of(angular, values).of_enough_revolutions()).collect()
 }
 
-fn average_of(angular: &AngularSignal, values: &[f64]) -> Result<SynchronousAverage, SignalError> {
-    let average = SynchronousAverage {
+/// The average of values of a signal, of however few revolutions.
+pub(super) fn average_of(angular: &AngularSignal, values: &[f64]) -> SynchronousAverage {
+    SynchronousAverage {
         revolutions: values.len().checked_div(angular.points_per_revolution).unwrap_or(0),
         nyquist_order: angular.nyquist_order,
         values: revolution_average(values, angular.points_per_revolution),
-    };
-    average.of_enough_revolutions()
+    }
 }

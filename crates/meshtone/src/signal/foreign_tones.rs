@@ -4,7 +4,8 @@ use std::f64::consts::TAU;
 
 use meshtone_fourier::{Complex64, hann_window, real_spectrum};
 
-use super::{AngularSignal, GearTrain};
+use super::spectrum::windowed;
+use super::{AngularSignal, GearTrain, upper_median};
 
 /// (lines) How near a line is to an order, to belong to it: the main lobe of Hann's window, and a little.
 const NEAR_LINES: f64 = 2.5;
@@ -21,8 +22,10 @@ const BAND: usize = 96;
 const FEWEST_REVOLUTIONS: usize = 6;
 /// Tones that a warning names.
 const NAMED: usize = 3;
-/// (Hz) Mains frequencies, and the highest harmonic that is looked for.
-const MAINS_HZ: ([f64; 2], f64) = ([50.0, 60.0], 12.0);
+/// (Hz) Mains frequencies.
+const MAINS_HZ: [f64; 2] = [50.0, 60.0];
+/// The highest harmonic of them that is looked for.
+const MAINS_HARMONICS: f64 = 12.0;
 /// Terms of the Blackman–Harris window: its side lobes are 92 dB down, so that no side lobe of a mesh order looks like a tone.
 ///
 /// Source: F. J. Harris, "On the use of windows for harmonic analysis with the discrete Fourier transform", Proc. IEEE 66 (1978) 51–83,
@@ -118,7 +121,8 @@ pub struct LinesOffShafts {
 /// * `shaft` - number of the shaft
 pub fn lines_off_shafts(angular: &AngularSignal, train: &GearTrain, shaft: usize) -> LinesOffShafts {
     let revolutions = angular.revolutions();
-    let spectrum = windowed_spectrum(angular, hann_window(revolutions * angular.points_per_revolution));
+    let points = revolutions * angular.points_per_revolution;
+    let spectrum = real_spectrum(&windowed(&angular.values[..points], &hann_window(points)));
     let (mut spacings, hunting) = train.spacings(shaft);
     if hunting * revolutions as f64 > 4.0 * NEAR_LINES {
         spacings.push(hunting);
@@ -171,13 +175,13 @@ pub fn foreign_tones(
         return None;
     }
     let points = revolutions * angular.points_per_revolution;
-    let spectrum = windowed_spectrum(angular, blackman_harris(points));
+    let spectrum = real_spectrum(&windowed(&angular.values[..points], &blackman_harris(points)));
     let squares: Vec<f64> = spectrum.iter().map(|line| line.norm_sqr()).collect();
     let passed = ((PASSED * angular.nyquist_order) as usize * revolutions).min(squares.len());
     let lines = LOBE + 1..passed.saturating_sub(LOBE);
     let energy: f64 = squares[lines.start.min(passed)..passed].iter().sum();
     let largest = squares[..passed].iter().copied().fold(0.0, f64::max);
-    let medians: Vec<f64> = squares[..passed].chunks(BAND).map(median).collect();
+    let medians: Vec<f64> = squares[..passed].chunks(BAND).map(upper_median).collect();
     let drift_rev = followed_order.map_or(0.0, |followed| FOLLOWED_CYCLES / followed);
     let highest = passed as f64 / revolutions as f64;
     let own = OwnOrders::new(train, shaft, revolutions as f64, (highest, drift_rev));
@@ -203,7 +207,11 @@ pub fn foreign_tones(
             order: order * to_input,
             amplitude: 2.0 * (lobe / mean_square_of_window).sqrt() / points as f64,
             part: (lobe / energy).min(1.0),
-            may_be_mains: is_of_mains(order * mean_speed_hz, mean_speed_hz / revolutions as f64),
+            may_be_mains: is_of_mains(
+                order * mean_speed_hz,
+                MAINS_HARMONICS,
+                2.0 * (mean_speed_hz / revolutions as f64),
+            ),
         })
     };
     let mut tones: Vec<ForeignTone> = lines.filter_map(tone).collect();
@@ -285,17 +293,11 @@ fn distance(order: f64, spacing: f64) -> f64 {
     (order - (order / spacing).round() * spacing).abs()
 }
 
-fn median(values: &[f64]) -> f64 {
-    let mut values = values.to_vec();
-    let middle = values.len() / 2;
-    *values.select_nth_unstable_by(middle, f64::total_cmp).1
-}
-
-fn is_of_mains(frequency_hz: f64, hz_per_line: f64) -> bool {
-    let (mains_hz, most) = MAINS_HZ;
-    mains_hz.into_iter().any(|mains_hz| {
-        let harmonic = (frequency_hz / mains_hz).round().clamp(1.0, most);
-        (frequency_hz - harmonic * mains_hz).abs() < 2.0 * hz_per_line
+/// Returns whether a frequency is so near a harmonic of a mains frequency, of the first so many.
+pub(super) fn is_of_mains(frequency_hz: f64, harmonics: f64, near_hz: f64) -> bool {
+    MAINS_HZ.into_iter().any(|mains_hz| {
+        let harmonic = (frequency_hz / mains_hz).round().clamp(1.0, harmonics);
+        (frequency_hz - harmonic * mains_hz).abs() < near_hz
     })
 }
 
@@ -305,14 +307,6 @@ fn blackman_harris(points: usize) -> Vec<f64> {
         WINDOW.iter().enumerate().map(|(term, share)| share * libm::cos(term as f64 * angle)).sum()
     };
     (0..points).map(at).collect()
-}
-
-fn windowed_spectrum(angular: &AngularSignal, window: Vec<f64>) -> Vec<Complex64> {
-    let values = &angular.values[..window.len().min(angular.values.len())];
-    let mean = values.iter().sum::<f64>() / window.len().max(1) as f64;
-    let windowed: Vec<f64> =
-        values.iter().zip(window).map(|(value, window)| window * (value - mean)).collect();
-    real_spectrum(&windowed)
 }
 
 impl std::fmt::Display for ForeignTones {

@@ -109,6 +109,7 @@ pub use squared_envelope::{
     FrequencyBand, SquaredEnvelopeSpectrum, squared_envelope, squared_envelope_order_spectrum,
     squared_envelope_spectrum,
 };
+pub(crate) use statistics::{StraightLine, upper_median};
 pub use statistics::{
     central_moment, crest_factor, kurtosis, peak, peak_to_peak, rms, skewness, standard_deviation,
     standardised_moment,

@@ -2,6 +2,7 @@
 
 use meshtone_fourier::{hann_window, real_spectrum};
 
+use super::spectrum::windowed;
 use super::{AngularSettings, AngularSignal, ShaftPhase, SignalError, angular_resample};
 
 /// Revolutions of a part, where they are not stated: a part of the recording, between these.
@@ -118,10 +119,7 @@ fn map_of_angular(
         OrderMap { revolutions, times_s: Vec::new(), speeds_hz: Vec::new(), amplitudes: Vec::new() };
     for part in 0..parts {
         let start = beyond * part / (parts - 1).max(1);
-        let values = &angular.values[start..start + length];
-        let mean = values.iter().sum::<f64>() / length as f64;
-        let windowed: Vec<f64> =
-            values.iter().zip(&window).map(|(value, window)| window * (value - mean)).collect();
+        let values = windowed(&angular.values[start..start + length], &window);
         let from_rev = angular.start_rev + start as f64 / points as f64;
         let second = |angle_rev: f64| phase.sample_at(angle_rev) / sampling_rate_hz;
         let turned = revolutions as f64;
@@ -129,7 +127,7 @@ fn map_of_angular(
         map.speeds_hz.push(turned / (second(from_rev + turned) - second(from_rev)));
         // Hann's window halves the amplitude, and each line has a mirror image.
         let amplitude = |line: &meshtone_fourier::Complex64| 4.0 * line.norm() / length as f64;
-        map.amplitudes.push(real_spectrum(&windowed).iter().take(lines).map(amplitude).collect());
+        map.amplitudes.push(real_spectrum(&values).iter().take(lines).map(amplitude).collect());
     }
     Ok(map)
 }

@@ -5,6 +5,7 @@ use super::check::{check_count, check_finite, check_positive};
 use super::filter_bank::{BankPosition, FilterBank};
 use super::kaiser::windowed_sinc;
 use super::{Edge, SignalError};
+use crate::operation::greatest_common_divisor;
 
 /// Zero crossings of the default filter on each side, in samples of the lower rate.
 pub(super) const ZERO_CROSSINGS: usize = 10;
@@ -236,11 +237,7 @@ fn check_factors(up: usize, down: usize) -> Result<(), SignalError> {
 }
 
 fn reduced(up: usize, down: usize) -> Result<(usize, usize), SignalError> {
-    let (mut a, mut b) = (up, down);
-    while b != 0 {
-        (a, b) = (b, a % b);
-    }
-    let divisor = a.max(1);
+    let divisor = greatest_common_divisor(up, down).max(1);
     check_factors(up / divisor, down / divisor)?;
     Ok((up / divisor, down / divisor))
 }

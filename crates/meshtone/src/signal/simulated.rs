@@ -1,9 +1,10 @@
 //! The chain for what was simulated: the scenario says how far the shafts have turned.
 
+use super::average::average_of;
 use super::check::{check_channel, check_length};
 use super::{
     AngleZero, AngularSignal, ChainSettings, Interpolation, Record, ShaftPhase, SignalError,
-    SynchronousAverage, angular_resample, process_angular_segments, process_average, revolution_average,
+    SynchronousAverage, angular_resample, process_angular_segments, process_average,
 };
 use crate::operation::{Motion, TimeGrid};
 use crate::scenario::Scenario;
@@ -144,9 +145,9 @@ impl SimulatedShafts {
     ) -> Result<AngularSignal, SignalError> {
         check_length("samples of a simulated signal", signal.len(), self.samples)?;
         match &self.turning {
-            SimulatedAngle::Steady { start, .. } => {
-                let points = self.samples_per_revolution(shaft).unwrap_or(1);
-                Ok(from_first_tooth(signal, *start, points))
+            SimulatedAngle::Steady { start, samples_per_pinion_revolution: of_pinion } => {
+                let [pinion, gear] = self.teeth.map(|teeth| teeth.max(1) as usize);
+                Ok(from_first_tooth(signal, *start, shaft.choose(*of_pinion, of_pinion / pinion * gear)))
             }
             SimulatedAngle::Varying(_) => angular_resample(signal, &self.phase(shaft)?, &settings.angular),
         }
@@ -212,26 +213,8 @@ impl SimulatedShafts {
         shaft: WheelName,
         settings: &ChainSettings,
     ) -> Result<SynchronousAverage, SignalError> {
-        if let (SimulatedAngle::Steady { start, .. }, true) = (&self.turning, signal.len() == self.samples) {
-            return Ok(average_from_first_tooth(
-                signal,
-                *start,
-                self.samples_per_revolution(shaft).unwrap_or(1),
-            ));
-        }
         let angular = self.angular(signal, shaft, settings)?;
-        Ok(SynchronousAverage {
-            revolutions: angular.revolutions(),
-            nyquist_order: angular.nyquist_order,
-            values: revolution_average(&angular.values, angular.points_per_revolution),
-        })
-    }
-
-    fn samples_per_revolution(&self, shaft: WheelName) -> Option<usize> {
-        let SimulatedAngle::Steady { samples_per_pinion_revolution, .. } = self.turning else { return None };
-        let [pinion, gear] = self.teeth.map(|teeth| teeth.max(1) as usize);
-        let of_gear = samples_per_pinion_revolution / pinion * gear;
-        Some(shaft.choose(samples_per_pinion_revolution, of_gear))
+        Ok(average_of(&angular, &angular.values))
     }
 
     /// Does what [`super::process_channel`] does, for one wheel of a simulated pair.
@@ -330,52 +313,9 @@ fn from_first_tooth(signal: &[f64], start: usize, points: usize) -> AngularSigna
     }
 }
 
-/// The average over the revolutions of [`from_first_tooth`], without a copy of the signal.
-fn average_from_first_tooth(signal: &[f64], start: usize, points: usize) -> SynchronousAverage {
-    let before = (points - start % points) % points;
-    let (earlier, later) = signal.split_at(before.min(signal.len()));
-    let mut sums = vec![0.0; points];
-    let mut add = |from: usize, values: &[f64]| {
-        sums[from..].iter_mut().zip(values).for_each(|(sum, value)| *sum += value);
-    };
-    let whole = later.chunks_exact(points);
-    let last = whole.remainder();
-    let mut revolutions = whole.len();
-    whole.for_each(|revolution| add(0, revolution));
-    if signal.len().is_multiple_of(points) && !earlier.is_empty() {
-        add(0, last);
-        add(last.len(), earlier);
-        revolutions += 1;
-    }
-    let values = if revolutions == 0 { Vec::new() } else { sums };
-    let values = values.into_iter().map(|sum: f64| sum / revolutions as f64).collect();
-    SynchronousAverage { revolutions, nyquist_order: points as f64 / 2.0, values }
-}
-
 #[cfg(test)]
 mod tests {
-    use super::{average_from_first_tooth, from_first_tooth};
-    use crate::signal::revolution_average;
-
-    #[test]
-    fn the_average_is_that_of_the_turned_signal() {
-        let signal: Vec<f64> = (0..24).map(|i| f64::from(i * i % 17)).collect();
-        for (len, points) in [(24, 6), (24, 5), (24, 24), (23, 4), (7, 8), (0, 3)] {
-            for start in 0..30 {
-                let turned = from_first_tooth(&signal[..len], start, points);
-                let average = average_from_first_tooth(&signal[..len], start, points);
-                assert_eq!(
-                    average.values,
-                    revolution_average(&turned.values, points),
-                    "{len} {points} {start}"
-                );
-                assert_eq!(
-                    (average.revolutions, average.nyquist_order),
-                    (turned.revolutions(), turned.nyquist_order)
-                );
-            }
-        }
-    }
+    use super::from_first_tooth;
 
     #[test]
     fn whole_revolutions_are_turned_and_others_cut() {

@@ -4,6 +4,12 @@ use super::SignalError;
 use super::check::{check_count, check_finite};
 use meshtone_fourier::real_spectrum;
 
+/// Values without their mean, behind a window of as many.
+pub(super) fn windowed(values: &[f64], window: &[f64]) -> Vec<f64> {
+    let mean = values.iter().sum::<f64>() / values.len() as f64;
+    values.iter().zip(window).map(|(value, window)| window * (value - mean)).collect()
+}
+
 /// Single-sided amplitude spectrum of one revolution: the amplitude of every order.
 ///
 /// With `X_k = Σ x_n e^(−2πikn/N)` the value of order k = 0 … ⌊N/2⌋ is `2|X_k|/N`, except for the mean,

@@ -3,6 +3,7 @@
 use meshtone_fourier::{Complex64, hann_window, inverse_complex, real_spectrum};
 
 use super::check::{check_channel, check_rate};
+use super::spectrum::windowed;
 use super::{AngularSettings, ShaftPhase, SignalError, angular_resample};
 
 /// A band of frequencies.
@@ -106,7 +107,7 @@ pub fn squared_envelope_spectrum(
     let squares = squared_envelope(signal, sampling_rate_hz, band)?;
     Ok(SquaredEnvelopeSpectrum {
         step: sampling_rate_hz / squares.len() as f64,
-        amplitudes: amplitudes(squares),
+        amplitudes: amplitudes(&squares),
     })
 }
 
@@ -129,15 +130,14 @@ pub fn squared_envelope_order_spectrum(
     let angular = angular_resample(&squares, phase, &AngularSettings::default())?;
     Ok(SquaredEnvelopeSpectrum {
         step: 1.0 / angular.revolutions() as f64,
-        amplitudes: amplitudes(angular.values),
+        amplitudes: amplitudes(&angular.values),
     })
 }
 
 /// Single-sided amplitudes with a Hann window, without the mean.
-fn amplitudes(mut values: Vec<f64>) -> Vec<f64> {
+fn amplitudes(values: &[f64]) -> Vec<f64> {
     let len = values.len();
-    let mean = values.iter().sum::<f64>() / len as f64;
-    values.iter_mut().zip(hann_window(len)).for_each(|(value, window)| *value = window * (*value - mean));
     // A Hann window halves the amplitude, and each line has a mirror image.
-    real_spectrum(&values).iter().map(|line| 4.0 * line.norm() / len as f64).collect()
+    let spectrum = real_spectrum(&windowed(values, &hann_window(len)));
+    spectrum.iter().map(|line| 4.0 * line.norm() / len as f64).collect()
 }

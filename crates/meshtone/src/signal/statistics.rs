@@ -249,6 +249,34 @@ pub fn standardised_moment(signal: &[f64], order: i32) -> Option<f64> {
     (deviation > rounding && scale.is_normal()).then(|| moment / scale)
 }
 
+/// The straight line through values at equal distances, by least squares.
+pub(crate) struct StraightLine {
+    /// Mean of the values.
+    pub mean: f64,
+    /// Rise from one value to the next.
+    pub slope: f64,
+    /// Sum of the squares by which the values are off it.
+    pub off: f64,
+}
+
+impl StraightLine {
+    pub(crate) fn through(values: &[f64]) -> Self {
+        let middle = 0.5 * (values.len() as f64 - 1.0);
+        let mean = values.iter().sum::<f64>() / values.len() as f64;
+        let along = || values.iter().enumerate().map(|(i, value)| (i as f64 - middle, value - mean));
+        let square: f64 = along().map(|(i, _)| i.powi(2)).sum();
+        let slope = along().map(|(i, value)| i * value).sum::<f64>() / square;
+        Self { mean, slope, off: along().map(|(i, value)| (value - slope * i).powi(2)).sum() }
+    }
+}
+
+/// The middle one of the values in rising order, of an even count the upper one of the two; 0 of none.
+pub(crate) fn upper_median(values: &[f64]) -> f64 {
+    let mut values = values.to_vec();
+    let middle = values.len() / 2;
+    if values.is_empty() { 0.0 } else { *values.select_nth_unstable_by(middle, f64::total_cmp).1 }
+}
+
 /// Skewness `µ₃/µ₂^1.5`: 0 for what is as often so far above as below its mean.
 ///
 /// # Arguments

@@ -2,12 +2,13 @@
 
 use thiserror::Error;
 
+use super::average::average_of;
 use super::check_recording::RecordingCheck;
 use super::record::{process_angular, process_angular_segments};
 use super::{
     AngleZero, AngularSettings, AngularSignal, ChainSettings, ForeignSearch, GearTrain, Interpolation,
     Record, SeparationSettings, ShaftPhase, SignalError, SignalWarning, SimulatedShafts, StatedTurning,
-    SynchronousAverage, TrainWheel, angular_resample, check_channel, revolution_average, sensor_faults,
+    SynchronousAverage, TrainWheel, angular_resample, check_channel, sensor_faults,
 };
 use crate::scenario::Scenario;
 use crate::wheel::WheelName;
@@ -239,11 +240,7 @@ impl TrainRecording<'_> {
         let angular = self.angular(wheel, settings)?;
         match angular.revolutions() {
             0 => Err(SignalError::TooFewRevolutions { revolutions: 0.0, needed: 1 }),
-            revolutions => Ok(SynchronousAverage {
-                revolutions,
-                nyquist_order: angular.nyquist_order,
-                values: revolution_average(&angular.values, angular.points_per_revolution),
-            }),
+            _ => Ok(average_of(&angular, &angular.values)),
         }
     }
 

@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use meshtone_fourier::{hann_window, real_spectrum};
 
 use super::check::{check_channel, check_rate};
+use super::spectrum::windowed;
 use super::{FrequencyBand, SignalError};
 
 /// The frequencies of [`velocity_rms`].
@@ -54,10 +55,7 @@ pub fn velocity_rms(acceleration_m_per_s2: &[f64], sampling_rate_hz: f64) -> Res
     let window = hann_window(length);
     let (mut square, mut blocks) = (0.0, 0.0);
     for block in acceleration_m_per_s2.windows(length).step_by(length / 2) {
-        let mean = block.iter().sum::<f64>() / length as f64;
-        let windowed: Vec<f64> =
-            block.iter().zip(&window).map(|(value, window)| window * (value - mean)).collect();
-        for (line, value) in real_spectrum(&windowed).iter().enumerate() {
+        for (line, value) in real_spectrum(&windowed(block, &window)).iter().enumerate() {
             let frequency_hz = line as f64 * sampling_rate_hz / length as f64;
             if (from_hz..=to_hz).contains(&frequency_hz) {
                 square += value.norm_sqr() / (TAU * frequency_hz).powi(2);

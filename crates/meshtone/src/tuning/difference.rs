@@ -8,7 +8,7 @@ use crate::scenario::Scenario;
 use crate::sensor::{Channel, ChannelKind};
 use crate::signal::{AngularSettings, ChainSettings, Interpolation, Record, SeparationSettings};
 use crate::simulate::Stages;
-use crate::solver::{Block, Output, Recorder};
+use crate::solver::Output;
 use crate::wheel::WheelName;
 
 /// Settings by which a difference signal is taken from a simulation.
@@ -102,22 +102,9 @@ pub fn difference_signals(
 /// Keeps the difference signal of each of many simulations.
 pub(super) struct KeepDifference<'a>(pub(super) &'a DifferenceChain);
 
-/// The channel and the pinion's speed of one simulation.
-#[derive(Default)]
-pub(super) struct ChannelAndSpeed {
-    channel: Vec<f64>,
-    pinion_speed_hz: Vec<f64>,
-}
-
-impl Recorder for ChannelAndSpeed {
-    fn record(&mut self, block: &Block) {
-        self.channel.extend_from_slice(block.output(0));
-        self.pinion_speed_hz.extend_from_slice(block.output(1));
-    }
-}
-
 impl Keep for KeepDifference<'_> {
-    type Recorder = ChannelAndSpeed;
+    // The channel, and the pinion's speed.
+    type Recorder = [Vec<f64>; 2];
     type Kept = Result<Vec<f64>, HybridError>;
 
     fn outputs(&self, scenario: &Scenario) -> Result<Vec<Output>, ScenarioError> {
@@ -125,12 +112,12 @@ impl Keep for KeepDifference<'_> {
         Ok(vec![channel, ChannelKind::PinionShaftSpeed.output()])
     }
 
-    fn recorder(&self, _: &Stages) -> ChannelAndSpeed {
-        ChannelAndSpeed::default()
+    fn recorder(&self, _: &Stages) -> Self::Recorder {
+        Self::Recorder::default()
     }
 
-    fn keep(&self, _: usize, stages: Stages, kept: ChannelAndSpeed) -> Self::Kept {
-        let channel = stages.shown(&self.0.channel, kept.channel);
-        Ok(self.0.record(&stages, &channel, &kept.pinion_speed_hz)?.parts.difference)
+    fn keep(&self, _: usize, stages: Stages, [motion, pinion_speed_hz]: Self::Recorder) -> Self::Kept {
+        let channel = stages.shown(&self.0.channel, motion);
+        Ok(self.0.record(&stages, &channel, &pinion_speed_hz)?.parts.difference)
     }
 }

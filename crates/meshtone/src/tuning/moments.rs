@@ -2,6 +2,7 @@
 
 use super::HybridError;
 use super::modify::{check_cycle, window_start};
+use crate::interpolation::UniformLinear;
 
 /// Highest power.
 const POWERS: usize = 5;
@@ -114,20 +115,13 @@ impl WindowMoments {
         let mut moments = JointMoments::default();
         for i in 0..POWERS {
             for j in 0..POWERS - i {
-                let sums = &self.sums[i][j];
-                moments.0[i][j] = (read(sums, to) - read(sums, from)) / count;
+                let sums = UniformLinear::uniform(0.0, 1.0, &self.sums[i][j]);
+                moments.0[i][j] = (sums.at(to) - sums.at(from)) / count;
             }
         }
         moments.0[0][0] = 1.0;
         moments
     }
-}
-
-/// A running sum between two values: each value counts by its part.
-fn read(sums: &[f64], place: f64) -> f64 {
-    let below = (place as usize).min(sums.len() - 2);
-    let part = place - below as f64;
-    sums[below] + part * (sums[below + 1] - sums[below])
 }
 
 impl JointMoments {

@@ -257,7 +257,9 @@ pub(super) fn refine(
     steps: [f64; 3],
 ) -> Result<(f64, Point), HybridError> {
     let free: Vec<usize> = (0..3).filter(|&d| ranges[d][1] > ranges[d][0]).collect();
-    let held: Point = std::array::from_fn(|d| start[d].clamp(ranges[d][0], ranges[d][1]));
+    let clamped =
+        |point: Point| -> Point { std::array::from_fn(|d| point[d].clamp(ranges[d][0], ranges[d][1])) };
+    let held = clamped(start);
     if free.is_empty() {
         return Ok((objective.at(held)?, held));
     }
@@ -280,7 +282,7 @@ pub(super) fn refine(
         .collect();
     let cost = Cost(|vertex: &[f64]| {
         let point = whole(vertex);
-        let inside: Point = std::array::from_fn(|d| point[d].clamp(ranges[d][0], ranges[d][1]));
+        let inside = clamped(point);
         let outside: f64 = (0..3).map(|d| (point[d] - inside[d]).abs()).sum();
         Ok(objective.at(inside)? + outside)
     });
@@ -291,8 +293,7 @@ pub(super) fn refine(
         .map_err(|error| error.downcast::<HybridError>().unwrap_or(HybridError::NoFit))?;
     let state = result.state();
     let vertex = state.get_best_param().ok_or(HybridError::NoFit)?;
-    let point = whole(vertex);
-    let inside: Point = std::array::from_fn(|d| point[d].clamp(ranges[d][0], ranges[d][1]));
+    let inside = clamped(whole(vertex));
     Ok((objective.at(inside)?, inside))
 }
 

@@ -49,7 +49,7 @@ impl Stages {
                  depends on damping and on small changes of speed",
                 found.join(", ")
             );
-            ScenarioWarning::new(WarningKind::MeshResonance, self.scenario.speed_key(), message)
+            ScenarioWarning::new(WarningKind::MeshResonance, self.scenario.words().speed_key, message)
         })
     }
 }

@@ -17,7 +17,7 @@ use crate::machine::{Shaft, WheelBody};
 use crate::operation::{Operation, TimeGrid};
 use crate::scenario::{MemoryLimit, Scenario, SensorPlace, SetLayout, entry_key};
 use crate::simulate::{Stages, stages_within};
-use crate::wheel::{Gears, unused_slices};
+use crate::wheel::unused_slices;
 
 /// (-) Part of the starting transient that may be left where the kept signal starts.
 const TOLERATED_TRANSIENT: f64 = 0.01;
@@ -113,8 +113,19 @@ impl Stages {
         let meshes = self.layout.mesh_names.iter().zip(&self.layout.gears);
         forces_n.zip(meshes).filter_map(move |((force_n, stiffness_n_per_m), (name, gears))| {
             let of_mesh = name.as_ref().map_or_else(String::new, |name| format!(" of mesh {name}"));
-            let teeth = format!("the teeth{of_mesh}");
-            overload(&teeth, key.clone(), torque_nm, force_n, stiffness_n_per_m, gears)
+            let deflection_mm = force_n / stiffness_n_per_m * 1e3;
+            let (module_mm, width_mm) = (gears.module_mm, gears.face_width_mm);
+            let most_mm = TOLERATED_DEFLECTION * module_mm;
+            (deflection_mm > most_mm).then(|| {
+                let most_nm = torque_nm.abs() * most_mm / deflection_mm;
+                let message = format!(
+                    "{torque_nm:?} N m deflects the teeth{of_mesh} by {deflection_mm:.3} mm, {:.2} modules, with {force_n:.0} N \
+                     on {width_mm} mm of face: they would break; at most {most_nm:.0} N m stays below a tenth of the \
+                     module",
+                    deflection_mm / module_mm
+                );
+                ScenarioWarning::new(WarningKind::Overload, key.clone(), message)
+            })
         })
     }
 
@@ -273,36 +284,6 @@ fn remedy(time: &TimeGrid, decay_per_s: f64) -> String {
     } else {
         "raise the damping_ratio of shafts and supports".to_owned()
     }
-}
-
-/// Teeth that a load would bend off.
-///
-/// # Arguments
-/// * `teeth` - what they are called
-/// * `key`, `torque_nm` - the torque of the brake, and where it stands
-/// * `force_n`, `stiffness_n_per_m` - what it makes the mesh carry, and the mesh's mean stiffness
-/// * `gears` - its wheels
-fn overload(
-    teeth: &str,
-    key: String,
-    torque_nm: f64,
-    force_n: f64,
-    stiffness_n_per_m: f64,
-    gears: &Gears,
-) -> Option<ScenarioWarning> {
-    let deflection_mm = force_n / stiffness_n_per_m * 1e3;
-    let (module_mm, width_mm) = (gears.module_mm, gears.face_width_mm);
-    let most_mm = TOLERATED_DEFLECTION * module_mm;
-    (deflection_mm > most_mm).then(|| {
-        let most_nm = torque_nm.abs() * most_mm / deflection_mm;
-        let message = format!(
-            "{torque_nm:?} N m deflects {teeth} by {deflection_mm:.3} mm, {:.2} modules, with {force_n:.0} N \
-             on {width_mm} mm of face: they would break; at most {most_nm:.0} N m stays below a tenth of the \
-             module",
-            deflection_mm / module_mm
-        );
-        ScenarioWarning::new(WarningKind::Overload, key, message)
-    })
 }
 
 /// The key of the largest torque, and the torque in N m.

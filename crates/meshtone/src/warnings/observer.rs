@@ -7,7 +7,6 @@ use crate::simulate::Stages;
 /// Sees the signals of one simulation, block by block, and keeps what [`Stages::warnings_of_signals`] needs of them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Observer {
-    pub(super) force: ForceFigures,
     /// Of the mesh force, and of the speeds of pinion and gear.
     pub(crate) figures: Figures,
     /// The same two over windows of the kept time.
@@ -36,7 +35,7 @@ impl Observer {
         let windows = [(); 2].map(|()| WindowSums::new(stages.time.kept_samples(), of_gear));
         let of_signals = |count: usize| vec![SignalFigures::new(stages.time.kept_samples()); count];
         let figures = Figures { forces: of_signals(1), speeds: of_signals(2) };
-        Self { force: ForceFigures::default(), figures, windows, turns }
+        Self { figures, windows, turns }
     }
 
     /// Sees some samples, the next ones of the kept time.
@@ -45,7 +44,6 @@ impl Observer {
     /// * `signals` - those of [`Self::CHANNELS`], equally long
     pub fn observe(&mut self, signals: [&[f64]; 4]) {
         let [vertical_g, force_n, pinion_hz, gear_hz] = signals;
-        self.force.add(force_n);
         let figures = self.figures.forces.iter_mut().chain(&mut self.figures.speeds);
         for (figures, signal) in figures.zip([force_n, pinion_hz, gear_hz]) {
             figures.add(signal);
@@ -60,12 +58,12 @@ impl Observer {
 
     /// (-) Part of the time in which the mesh force is 0: under `contact`, in which no teeth touch.
     pub fn apart_fraction(&self) -> f64 {
-        self.force.part_of_time(self.force.idle)
+        self.figures.forces[0].part_of_zeros()
     }
 
     /// (-) Part of the time in which the mesh force is negative.
     pub fn tension_fraction(&self) -> f64 {
-        self.force.part_of_time(self.force.pulling)
+        self.figures.forces[0].part_of_negatives()
     }
 }
 
@@ -75,101 +73,11 @@ fn lasts(stages: &Stages) -> bool {
     stages.scenario.model.has_meshes() && operation.keeps_speed() && !operation.is_drawn_for_every_sample()
 }
 
-/// Figures of the force along the line of action.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct ForceFigures {
-    pub samples: usize,
-    /// Samples in which it is negative.
-    pub pulling: usize,
-    /// Samples in which it is 0.
-    pub idle: usize,
-    pub least_n: f64,
-    /// Of either sign.
-    pub largest_n: f64,
-    sum_n: Sum,
-}
-
-impl Default for ForceFigures {
-    fn default() -> Self {
-        let sum_n = Sum::default();
-        Self { samples: 0, pulling: 0, idle: 0, least_n: f64::INFINITY, largest_n: 0.0, sum_n }
-    }
-}
-
-impl ForceFigures {
-    pub fn add(&mut self, force_n: &[f64]) {
-        self.samples += force_n.len();
-        self.pulling += force_n.iter().filter(|&&force| force < 0.0).count();
-        self.idle += force_n.iter().filter(|&&force| force == 0.0).count();
-        let (least_n, most_n) = extremes(force_n);
-        self.least_n = self.least_n.min(least_n);
-        self.largest_n = self.largest_n.max(most_n.max(-least_n));
-        self.sum_n.add(force_n, |force| force);
-    }
-
-    /// (N) Over all samples.
-    pub fn mean_n(&self) -> f64 {
-        self.sum_n.total() / self.samples as f64
-    }
-
-    fn part_of_time(&self, samples: usize) -> f64 {
-        samples as f64 / self.samples.max(1) as f64
-    }
-}
-
-/// Least and largest value; infinite of no values.
-fn extremes(values: &[f64]) -> (f64, f64) {
-    let (mut least, mut most) = ([f64::INFINITY; LANES], [f64::NEG_INFINITY; LANES]);
-    let chunks = values.chunks_exact(LANES);
-    let rest = chunks.remainder();
-    let mut take = |lane: usize, value: f64| {
-        least[lane] = if value < least[lane] { value } else { least[lane] };
-        most[lane] = if value > most[lane] { value } else { most[lane] };
-    };
-    chunks.for_each(|chunk| (0..LANES).for_each(|lane| take(lane, chunk[lane])));
-    rest.iter().enumerate().for_each(|(lane, &value)| take(lane, value));
-    (least.into_iter().fold(f64::INFINITY, f64::min), most.into_iter().fold(f64::NEG_INFINITY, f64::max))
-}
-
-/// Values that are added up side by side.
-const LANES: usize = 8;
-
-/// A sum over samples, the same whatever blocks they come in: every eighth sample is added to the same part of it.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-struct Sum {
-    parts: [f64; LANES],
-    /// The part that the next sample belongs to.
-    next: usize,
-}
-
-impl Sum {
-    fn add(&mut self, values: &[f64], of: impl Fn(f64) -> f64) {
-        let (head, rest) = values.split_at(((LANES - self.next) % LANES).min(values.len()));
-        let mut one = |values: &[f64], parts: &mut [f64; LANES]| {
-            for &value in values {
-                parts[self.next] += of(value);
-                self.next = (self.next + 1) % LANES;
-            }
-        };
-        one(head, &mut self.parts);
-        let chunks = rest.chunks_exact(LANES);
-        let tail = chunks.remainder();
-        for chunk in chunks {
-            (0..LANES).for_each(|lane| self.parts[lane] += of(chunk[lane]));
-        }
-        one(tail, &mut self.parts);
-    }
-
-    fn total(&self) -> f64 {
-        self.parts.iter().sum()
-    }
-}
-
 /// A signal summed over the turns of either wheel.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct WheelTurnSums {
     samples: usize,
-    squares: Sum,
+    squares: f64,
     pub of_gear: TurnSum,
     pub of_pinion: TurnSum,
 }
@@ -180,19 +88,19 @@ impl WheelTurnSums {
         let of_pinion = time.samples_per_pinion_revolution;
         let of_gear = time.samples_per_pitch(gears) * gears.gear_teeth as usize;
         let turns = |samples_per_turn| TurnSum::new(samples_per_turn, time.kept_samples());
-        Self { samples: 0, squares: Sum::default(), of_gear: turns(of_gear), of_pinion: turns(of_pinion) }
+        Self { samples: 0, squares: 0.0, of_gear: turns(of_gear), of_pinion: turns(of_pinion) }
     }
 
     fn add(&mut self, signal: &[f64]) {
         self.samples += signal.len();
-        self.squares.add(signal, |value| value * value);
+        self.squares = signal.iter().fold(self.squares, |sum, value| sum + value * value);
         self.of_gear.add(signal);
         self.of_pinion.add(signal);
     }
 
     /// Of all samples.
     pub fn rms(&self) -> f64 {
-        (self.squares.total() / self.samples.max(1) as f64).sqrt()
+        (self.squares / self.samples.max(1) as f64).sqrt()
     }
 }
 

@@ -1,7 +1,7 @@
 //! Warnings that the signals cause.
 
 use super::largest_torque;
-use super::observer::{ForceFigures, Observer};
+use super::observer::Observer;
 use super::step_error::{StepError, StepJudgement, step_error, step_error_of_part, step_error_of_signals};
 use crate::checks::{Figures, SignalFigures, WindowSums};
 use crate::error::{ScenarioWarning, WarningKind};
@@ -101,7 +101,12 @@ impl Simulation {
         let figures = stages.figures(channels);
         let meshes = figures.forces.iter().zip(static_n).enumerate();
         let forces = meshes.filter_map(|(mesh, (force_n, static_n))| {
-            resonance(&stages.mesh_in_words(mesh), stages.scenario.speed_key(), force_n.largest(), static_n)
+            resonance(
+                &stages.mesh_in_words(mesh),
+                stages.scenario.words().speed_key,
+                force_n.largest(),
+                static_n,
+            )
         });
         let driven_hz = stages.mean_driven_hz();
         let shafts = stages.layout.shaft_names.iter().zip(&stages.layout.ratios).zip(&figures.speeds);
@@ -141,14 +146,15 @@ impl Stages {
     /// * `judgement` - how the step is judged where a resonance is suspected
     pub fn warnings_of_signals(&self, observer: &Observer, judgement: StepJudgement) -> Vec<ScenarioWarning> {
         let is_damaged = self.pairs.iter().any(|pair| !pair.damaged.is_empty());
-        let pulling = (!self.teeth_part()).then(|| tension(&observer.force, is_damaged)).flatten();
+        let force = &observer.figures.forces[0];
+        let pulling = (!self.teeth_part()).then(|| tension(force, is_damaged)).flatten();
         let rate_hz = self.time.sampling_rate_hz;
         let step =
             step_error(self, observer, judgement).and_then(|error| long_step(error, rate_hz, TOLERATED_STEP));
         let (_, torque_nm) = largest_torque(&self.scenario.operation);
         let static_n = self.forces_of_torque_n(torque_nm)[0];
-        let resonance = resonance("the mesh", self.scenario.speed_key(), observer.force.largest_n, static_n);
-        let braked = self.braked_rotation(observer.force.mean_n());
+        let resonance = resonance("the mesh", self.scenario.words().speed_key, force.largest(), static_n);
+        let braked = self.braked_rotation(force.mean());
         let unsettled = self.unsettled(&observer.windows);
         let (imbalance, rattle) = (self.imbalance(&observer.figures), self.rattle(&observer.figures));
         let doubtful =
@@ -270,11 +276,10 @@ fn long_step(error: StepError, rate_hz: f64, tolerated: f64) -> Option<ScenarioW
 }
 
 /// A mesh that pulls, and what brings that down.
-fn tension(force: &ForceFigures, is_damaged: bool) -> Option<ScenarioWarning> {
-    let fraction = force.pulling as f64 / force.samples.max(1) as f64;
+fn tension(force: &SignalFigures, is_damaged: bool) -> Option<ScenarioWarning> {
+    let fraction = force.part_of_negatives();
     (fraction > TOLERATED_TENSION).then(|| {
-        let least_n = force.least_n;
-        let mean_n = force.mean_n();
+        let (least_n, mean_n) = (force.least(), force.mean());
         // The force that deviations and lost material add hardly depends on the load.
         let advice = if is_damaged && mean_n - least_n > SENSIBLE_LOAD_FACTOR * mean_n {
             "no sensible load would keep these teeth in contact; less damage reduces it"
@@ -299,7 +304,7 @@ mod tests {
         let of = |least_n: f64, pulling: usize, is_damaged: bool| {
             let mut mesh_force_n = vec![200.0; 100];
             mesh_force_n[..pulling].fill(least_n);
-            let mut force = ForceFigures::default();
+            let mut force = SignalFigures::new(mesh_force_n.len());
             // In blocks, as from the time loop.
             mesh_force_n.chunks(7).for_each(|block| force.add(block));
             tension(&force, is_damaged).map(|warning| warning.message).unwrap_or_default()

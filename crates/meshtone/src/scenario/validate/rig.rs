@@ -31,7 +31,7 @@ impl Scenario {
         let gears = honoured.gears();
         let speed = DrivenSpeed {
             operation: &honoured.operation,
-            key: self.speed_key(),
+            key: self.words().speed_key,
             pitch_line_mm: pitch_line_mm(gears.transverse_module_mm(), gears.pinion_teeth),
         };
         speed.check()?;

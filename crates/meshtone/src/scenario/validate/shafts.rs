@@ -5,7 +5,7 @@ use super::super::{
     Fault, Layout, Member, MemoryLimit, OfSet, Scenario, ScenarioError, ScenarioWarning, Sensor, Shafts,
     WarningKind, long,
 };
-use super::{DrivenSpeed, pitch_line_mm};
+use super::{DrivenSpeed, duration, pitch_line_mm};
 use crate::bearing::RollingParts;
 use crate::damage::check_faults;
 use crate::keys::{Keys, below, check_keys, check_rows, require};
@@ -154,20 +154,7 @@ impl Scenario {
             return Err(ScenarioError::new("solver.duration_s", duration_s, problem)
                 .with_help("remove one of the two"));
         }
-        if let (Some(revolutions), Some(_)) = (settings.pinion_revolutions, &self.operation.speed_profile_hz)
-        {
-            let problem = "given with operation.speed_profile_hz, whose speeds vary";
-            return Err(ScenarioError::new("solver.input_revolutions", revolutions, problem)
-                .with_help("remove it: the profile is kept from its start to its end"));
-        }
-        let drive = &self.operation;
-        if let Some(revolutions) = settings.pinion_revolutions {
-            let kept_s = revolutions / drive.pinion_speed_hz;
-            drive.check_length("solver.input_revolutions", revolutions, kept_s)?;
-        }
-        if let Some(duration_s) = settings.duration_s {
-            drive.check_length("solver.duration_s", duration_s, duration_s)?;
-        }
+        duration::check_profiles(self, "solver.input_revolutions")?;
         let time = self.time_grid();
         // Time, force of each mesh, speed of each shaft and a sensor's signal, with what is made of them.
         let signals = 4 * self.meshes.len()

@@ -2,8 +2,10 @@
 
 use meshtone_fourier::{Complex64, convenient_length, hann_window, inverse_complex, real_spectrum};
 
+use crate::interpolation::UniformLinear;
 use crate::signal::check::{check_channel, check_rate};
-use crate::signal::{FrequencyBand, ShaftPhase, SignalError};
+use crate::signal::spectrum::windowed;
+use crate::signal::{FrequencyBand, ShaftPhase, SignalError, upper_median};
 
 /// Equal parts of all frequencies that are looked at, each part as a band: nobody knows which resonance a defect rings in.
 const PARTS: [usize; 5] = [1, 2, 4, 8, 16];
@@ -146,12 +148,8 @@ fn sums_of_squared_envelope(lines: &[Complex64]) -> Vec<f64> {
 
 /// The mean of the squared envelope in each cell, over its mean in all.
 fn cells(sums: &[f64], edges: &[f64], per_sample: f64) -> Vec<f64> {
-    let up_to = |edge: &f64| {
-        let place = (edge * per_sample).min((sums.len() - 1) as f64);
-        let before = (place as usize).min(sums.len() - 2);
-        sums[before] + (place - before as f64) * (sums[before + 1] - sums[before])
-    };
-    let sums: Vec<f64> = edges.iter().map(up_to).collect();
+    let (up_to, last) = (UniformLinear::uniform(0.0, 1.0, sums), (sums.len() - 1) as f64);
+    let sums: Vec<f64> = edges.iter().map(|edge| up_to.at((edge * per_sample).min(last))).collect();
     let widths = edges.windows(2).map(|pair| (pair[1] - pair[0]).max(f64::MIN_POSITIVE));
     let means: Vec<f64> =
         sums.windows(2).zip(widths).map(|(pair, width)| (pair[1] - pair[0]) / width).collect();
@@ -175,10 +173,7 @@ fn mean_spectrum(cells: &[f64]) -> Vec<f64> {
     let starts = (0..=cells.len() - points).step_by((points / 2).max(1));
     let segments = starts.clone().count() as f64;
     for start in starts {
-        let of = &cells[start..start + points];
-        let mean = of.iter().sum::<f64>() / points as f64;
-        let mut values: Vec<f64> =
-            of.iter().zip(&window).map(|(value, window)| window * (value - mean)).collect();
+        let mut values = windowed(&cells[start..start + points], &window);
         values.resize(padded, 0.0);
         // A Hann window halves the amplitude, and each line has a mirror image.
         let amplitude = |line: &Complex64| line.norm_sqr() * (4.0 / points as f64).powi(2) / segments;
@@ -192,10 +187,8 @@ fn stand_out(powers: &[f64], step: f64) -> Vec<f64> {
     let half = BESIDE.1.max(BESIDE.0 / step) as usize;
     let stride = (half / MEDIANS).max(1);
     let median = |line: usize| {
-        let mut beside =
-            powers[line.saturating_sub(half).max(1)..(line + half + 1).min(powers.len())].to_vec();
-        let middle = beside.len() / 2;
-        beside.select_nth_unstable_by(middle, f64::total_cmp).1.max(f64::MIN_POSITIVE)
+        let beside = line.saturating_sub(half).max(1)..(line + half + 1).min(powers.len());
+        upper_median(&powers[beside]).max(f64::MIN_POSITIVE)
     };
     let medians: Vec<f64> = (1..powers.len()).step_by(stride).map(median).collect();
     let standing = |line: usize| (0.5 * (1.0 + powers[line] / medians[(line - 1) / stride])).ln();

@@ -1,7 +1,7 @@
 //! The lines of a squared envelope spectrum at the defect orders of a bearing.
 
 use crate::bearing::DefectOrders;
-use crate::signal::SquaredEnvelopeSpectrum;
+use crate::signal::{SquaredEnvelopeSpectrum, upper_median};
 
 /// (-) How far slip moves a line, on either side, and a stated geometry's orders are off.
 pub(super) const SLIP: f64 = 0.03;
@@ -178,9 +178,7 @@ fn line(
         .filter(|(line, _)| others.iter().all(|other| !is_nearer(*line as f64 / lines_per_order, *other)))
         .max_by(|a, b| a.1.total_cmp(&b.1))?;
     let beside = within(reach + BESIDE.0.max(BESIDE.1 * lines_per_order));
-    let mut beside = spectrum.amplitudes[beside.start..beside.end.min(spectrum.amplitudes.len())].to_vec();
-    let middle = beside.len() / 2;
-    let median = *beside.select_nth_unstable_by(middle, f64::total_cmp).1;
+    let median = upper_median(&spectrum.amplitudes[beside.start..beside.end.min(spectrum.amplitudes.len())]);
     // A spectrum of zeros has no lines.
     (median > 0.0).then(|| DefectLine {
         kind,

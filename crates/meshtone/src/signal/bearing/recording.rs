@@ -4,8 +4,8 @@ use super::{BearingDefects, DefectLine, defect_lines};
 use crate::bearing::BearingGeometry;
 use crate::signal::{
     FrequencyBand, Kurtogram, KurtogramBand, ShaftPhase, SignalError, SignalWarning, SquaredEnvelopeSpectrum,
-    TrainRecording, cepstral_prewhitening, check_channel, discrete_random_separation, kurtogram,
-    squared_envelope_order_spectrum, synchronous_residual,
+    SynchronousResidual, TrainRecording, cepstral_prewhitening, check_channel, discrete_random_separation,
+    kurtogram, squared_envelope_order_spectrum, synchronous_residual,
 };
 
 /// Fewest revolutions of shafts whose average is removed: it contains one part in so many of the power of all else.
@@ -82,14 +82,6 @@ pub struct BearingRecords {
     pub warnings: Vec<SignalWarning>,
 }
 
-/// A recording after a separation.
-pub(super) struct Separated {
-    /// The sample of the recording that it begins at.
-    pub first_sample: usize,
-    pub values: Vec<f64>,
-    warnings: Vec<SignalWarning>,
-}
-
 impl TrainRecording<'_> {
     /// Looks at bearings: [`Self::bearing_defects`] judges them, and for people who look there are the kurtogram of what is left without the gears, and in one band
     /// the spectrum of its squared envelope over the orders of each bearing's shaft with its defect lines.
@@ -130,7 +122,7 @@ impl TrainRecording<'_> {
         let phases = self.phases_of(bearings)?;
         let without_cycle = self.without_cycle(&phases)?;
         let defects = self.defects_without(without_cycle.as_ref(), &phases, bearings)?;
-        let Separated { first_sample, values: signal, warnings } =
+        let (SynchronousResidual { first_sample, values: signal }, warning) =
             self.separated(&phases, settings.separation, without_cycle)?;
         let speed_hz = |shaft: usize| phases[shaft].mean_speed_hz(self.sampling_rate_hz);
         let pass_hz = bearings.iter().map(|of| of.geometry.defect_orders().inner_race * speed_hz(of.shaft));
@@ -148,7 +140,7 @@ impl TrainRecording<'_> {
         let whole = FrequencyBand { from_hz: 0.0, to_hz: 0.5 * self.sampling_rate_hz };
         let band = stated.or(chosen.map(|KurtogramBand { band, .. }| band)).unwrap_or(whole);
         let record = |of: &TrainBearing| {
-            let phase = within(&phases[of.shaft], first_sample, signal.len());
+            let phase = phases[of.shaft].part(first_sample..first_sample + signal.len())?;
             let spectrum =
                 squared_envelope_order_spectrum(&signal, self.sampling_rate_hz, Some(band), &phase)?;
             let mut lines = defect_lines(&spectrum, &of.geometry.defect_orders(), 1.0);
@@ -158,6 +150,7 @@ impl TrainRecording<'_> {
         };
         let bearings = bearings.iter().map(record).collect::<Result<_, SignalError>>()?;
         let kurtosis = chosen.map(|of| of.kurtosis);
+        let warnings = warning.into_iter().collect();
         Ok(BearingRecords { defects, kurtogram, band, kurtosis, bearings, warnings })
     }
 
@@ -177,60 +170,53 @@ impl TrainRecording<'_> {
 
     /// The recording without the average over the cycle after which the same teeth meet again, which is a cycle of all shafts; or how many cycles it has, where
     /// they are too few.
-    pub(super) fn without_cycle(&self, phases: &[ShaftPhase]) -> Result<Result<Separated, f64>, SignalError> {
+    pub(super) fn without_cycle(
+        &self,
+        phases: &[ShaftPhase],
+    ) -> Result<Result<SynchronousResidual, f64>, SignalError> {
         let (_, cycles_per_revolution) = self.train.spacings(0);
         let mut cycle = phases[0].clone();
         cycle.revolutions.iter_mut().for_each(|angle| *angle *= cycles_per_revolution);
         if cycle.span_rev() < FEWEST_CYCLES {
             return Ok(Err(cycle.span_rev()));
         }
-        let residual = synchronous_residual(self.signal, &[cycle])?;
-        Ok(Ok(Separated {
-            first_sample: residual.first_sample,
-            values: residual.values,
-            warnings: Vec::new(),
-        }))
+        Ok(Ok(synchronous_residual(self.signal, &[cycle])?))
     }
 
-    /// The recording after the separation, which may be that of its cycles.
+    /// The recording after the separation, which may be that of its cycles, and what is doubtful about it.
     fn separated(
         &self,
         phases: &[ShaftPhase],
         separation: BearingSeparation,
-        without_cycle: Result<Separated, f64>,
-    ) -> Result<Separated, SignalError> {
-        let whole = |values| Ok(Separated { first_sample: 0, values, warnings: Vec::new() });
-        match separation {
-            BearingSeparation::None => whole(self.signal.to_vec()),
-            BearingSeparation::Prewhitening => whole(cepstral_prewhitening(self.signal)?),
-            BearingSeparation::DiscreteRandom => {
+        without_cycle: Result<SynchronousResidual, f64>,
+    ) -> Result<(SynchronousResidual, Option<SignalWarning>), SignalError> {
+        let whole = |values| SynchronousResidual { first_sample: 0, values };
+        let left = match (separation, without_cycle) {
+            (BearingSeparation::None, _) => whole(self.signal.to_vec()),
+            (BearingSeparation::Prewhitening, _) => whole(cepstral_prewhitening(self.signal)?),
+            (BearingSeparation::DiscreteRandom, _) => {
                 let slowest_hz = phases.iter().map(|phase| phase.mean_speed_hz(self.sampling_rate_hz));
                 let samples = BLOCK.0 * self.sampling_rate_hz / slowest_hz.fold(f64::INFINITY, f64::min);
                 let block = (samples.ceil() as usize).min(self.signal.len() / BLOCK.1);
                 let random = discrete_random_separation(self.signal, block, block)?.random;
                 // At the ends some of the tones is left.
                 let values = random[block / 2..random.len() - block / 2].to_vec();
-                Ok(Separated { first_sample: block / 2, values, warnings: Vec::new() })
+                SynchronousResidual { first_sample: block / 2, values }
             }
-            BearingSeparation::Averages => {
-                if let Ok(separated) = without_cycle {
-                    return Ok(separated);
-                }
+            (BearingSeparation::Averages, Ok(residual)) => residual,
+            (BearingSeparation::Averages, Err(_)) => {
                 let enough = phases.iter().filter(|phase| phase.span_rev() >= FEWEST_REVOLUTIONS);
                 let averaged: Vec<ShaftPhase> = enough.cloned().collect();
-                let warnings = self.not_averaged(phases).into_iter().collect();
-                if averaged.is_empty() {
-                    let values = self.signal.to_vec();
-                    return Ok(Separated { first_sample: 0, values, warnings });
-                }
-                let residual = synchronous_residual(self.signal, &averaged)?;
-                Ok(Separated { first_sample: residual.first_sample, values: residual.values, warnings })
+                let left = match averaged[..] {
+                    [] => whole(self.signal.to_vec()),
+                    _ => synchronous_residual(self.signal, &averaged)?,
+                };
+                return Ok((left, self.not_averaged(phases)));
             }
-        }
+        };
+        Ok((left, None))
     }
-}
 
-impl TrainRecording<'_> {
     /// The warning of shafts that turn too few times for an average.
     fn not_averaged(&self, phases: &[ShaftPhase]) -> Option<SignalWarning> {
         let named = self.train.shafts.iter().zip(phases);
@@ -243,19 +229,6 @@ impl TrainRecording<'_> {
             of_all,
             needed: FEWEST_REVOLUTIONS,
         })
-    }
-}
-
-/// The phase over a part of its recording.
-pub(super) fn within(phase: &ShaftPhase, first_sample: usize, samples: usize) -> ShaftPhase {
-    let from = phase.first_sample.max(first_sample).min(phase.first_sample + phase.revolutions.len());
-    let end = (phase.first_sample + phase.revolutions.len()).min(first_sample + samples).max(from);
-    let revolutions = phase.revolutions[from - phase.first_sample..end - phase.first_sample].to_vec();
-    ShaftPhase {
-        first_sample: from.saturating_sub(first_sample),
-        revolutions,
-        zero: phase.zero,
-        warnings: Vec::new(),
     }
 }
 

@@ -6,8 +6,8 @@ use super::TrainBearing;
 use super::bands::{BandSpectra, band_spectra};
 use super::comb::{Comb, Readable, Scores};
 use super::lines::{DefectKind, SLIP};
-use super::recording::{FEWEST_CYCLES, LEAST_WIDTH, Separated, within};
-use crate::signal::{FrequencyBand, ShaftPhase, SignalError, TrainRecording};
+use super::recording::{FEWEST_CYCLES, LEAST_WIDTH};
+use crate::signal::{FrequencyBand, ShaftPhase, SignalError, SynchronousResidual, TrainRecording};
 
 /// (rev) Fewest turns of a shaft: slip would move a race's line over those beside it.
 const FEWEST_TURNS: f64 = 14.0;
@@ -202,7 +202,7 @@ impl TrainRecording<'_> {
     /// * `bearings` - the bearings
     pub(super) fn defects_without(
         &self,
-        left: Result<&Separated, &f64>,
+        left: Result<&SynchronousResidual, &f64>,
         phases: &[ShaftPhase],
         bearings: &[TrainBearing],
     ) -> Result<BearingDefects, SignalError> {
@@ -216,12 +216,12 @@ impl TrainRecording<'_> {
             }
         };
         let shafts: BTreeSet<usize> = bearings.iter().map(|of| of.shaft).collect();
-        let phases: Vec<(usize, ShaftPhase)> = shafts
+        let samples = separated.first_sample..separated.first_sample + separated.values.len();
+        let (shafts, phases): (Vec<usize>, Vec<ShaftPhase>) = shafts
             .into_iter()
-            .map(|shaft| (shaft, within(&phases[shaft], separated.first_sample, separated.values.len())))
+            .filter_map(|shaft| Some((shaft, phases[shaft].part(samples.clone()).ok()?)))
             .filter(|(_, phase)| phase.span_rev() >= FEWEST_TURNS)
-            .collect();
-        let (shafts, phases): (Vec<usize>, Vec<ShaftPhase>) = phases.into_iter().unzip();
+            .unzip();
         let mut combs: Vec<Comb> = Vec::new();
         let mut least_width_hz = 0.0_f64;
         for (place, of) in bearings.iter().enumerate() {

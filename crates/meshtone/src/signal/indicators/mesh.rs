@@ -65,11 +65,8 @@ impl MeshHarmonic {
     /// * `number` - of the harmonic, from 1
     /// * `unit` - of the signal
     pub(super) fn table(&self, number: usize, unit: &str) -> Vec<IndicatorValue> {
-        let value = |name: String, value| IndicatorValue {
-            name: format!("mesh_harmonic_{number}{name}"),
-            unit: unit.to_owned(),
-            value,
-        };
+        let value =
+            |name: String, value| IndicatorValue::new(format!("mesh_harmonic_{number}{name}"), unit, value);
         let mut all = vec![value(String::new(), self.amplitude)];
         for (sign, sidebands) in [("minus", self.lower_sidebands), ("plus", self.upper_sidebands)] {
             let named = sidebands.iter().enumerate();

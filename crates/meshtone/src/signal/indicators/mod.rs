@@ -62,6 +62,12 @@ pub struct IndicatorValue {
     pub value: Option<f64>,
 }
 
+impl IndicatorValue {
+    fn new(name: impl Into<String>, unit: &str, value: Option<f64>) -> Self {
+        Self { name: name.into(), unit: unit.to_owned(), value }
+    }
+}
+
 impl Indicators {
     /// The indicators of a record that stands alone.
     ///
@@ -172,16 +178,10 @@ impl Indicators {
             ("sideband_level_factor", self.sideband_level_factor),
         ];
         let of_shapes = shapes.into_iter().flat_map(|(part, shape)| shape.table(part, unit));
-        let of_gear = gear.into_iter().map(|(name, value)| IndicatorValue {
-            name: name.to_owned(),
-            unit: "-".to_owned(),
-            value,
-        });
+        let of_gear = gear.into_iter().map(|(name, value)| IndicatorValue::new(name, "-", value));
         let of_octaves = OCTAVES.iter().zip(&self.octaves).flat_map(|((name, _), band)| {
-            let value = |last, unit: &str, value| IndicatorValue {
-                name: format!("difference_octave_{name}_{last}"),
-                unit: unit.to_owned(),
-                value,
+            let value = |last, unit, value| {
+                IndicatorValue::new(format!("difference_octave_{name}_{last}"), unit, value)
             };
             let kurtosis = band.and_then(|band| band.kurtosis);
             [value("rms", unit, band.map(|band| band.rms)), value("kurtosis", "-", kurtosis)]

@@ -61,11 +61,7 @@ impl ShapeIndicators {
             ("skewness", "-", self.skewness),
             ("kurtosis", "-", self.kurtosis),
         ]
-        .map(|(name, unit, value)| IndicatorValue {
-            name: format!("{part}_{name}"),
-            unit: unit.to_owned(),
-            value,
-        })
+        .map(|(name, unit, value)| IndicatorValue::new(format!("{part}_{name}"), unit, value))
         .into()
     }
 }

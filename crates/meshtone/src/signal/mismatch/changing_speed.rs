@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 
 use meshtone_fourier::real_spectrum;
 
-use crate::signal::AngularSignal;
+use crate::signal::{AngularSignal, upper_median};
 
 /// Numbers of windows that the recording is cut into: the more, the faster the change that is followed, and the fewer, the
 /// weaker the lines that are seen.
@@ -125,9 +125,7 @@ fn contrast(values: &[f64], bins: usize) -> Vec<f64> {
     let power: Vec<f64> = real_spectrum(&windowed).iter().take(bins).map(|x| x.norm_sqr()).collect();
     let floor = |block: usize| {
         let from = block.saturating_sub(1) * FLOOR_BINS;
-        let mut near = power[from..((block + 2) * FLOOR_BINS).min(power.len())].to_vec();
-        let middle = near.len() / 2;
-        *near.select_nth_unstable_by(middle, f64::total_cmp).1
+        upper_median(&power[from..((block + 2) * FLOOR_BINS).min(power.len())])
     };
     let of_block = |(block, powers): (usize, &[f64])| {
         let floor = floor(block).max(f64::MIN_POSITIVE);

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use meshtone_fourier::{convenient_count, real_spectrum};
 
-use crate::signal::AngularSignal;
+use crate::signal::{AngularSignal, upper_median};
 
 /// Most values that are transformed: more would take longer than the rest of the chain.
 const MOST_VALUES: usize = 1 << 19;
@@ -86,7 +86,7 @@ impl FineOrders {
         let of_comb = lines.len().min(((HIGHEST_ORDER + 1.0) * revolutions as f64) as usize);
         let floor = |block: usize| {
             let from = block.saturating_sub(FLOOR_BLOCKS) * BLOCK;
-            median(&mut lines[from..((block + FLOOR_BLOCKS + 1) * BLOCK).min(lines.len())].to_vec())
+            upper_median(&lines[from..((block + FLOOR_BLOCKS + 1) * BLOCK).min(lines.len())])
         };
         Some(Self {
             // What is nothing but rounding has no shape.
@@ -95,7 +95,7 @@ impl FineOrders {
                 .collect(),
             bins_per_order: revolutions as f64,
             largest: lines.chunks(BLOCK).map(|block| block.iter().copied().fold(0.0, f64::max)).collect(),
-            medians: lines.chunks(BLOCK).map(|block| median(&mut block.to_vec())).collect(),
+            medians: lines.chunks(BLOCK).map(upper_median).collect(),
             logarithms: lines.iter().take(of_comb).map(|line| (line + 1e-24 * strongest).ln()).collect(),
             lines,
         })
@@ -139,7 +139,7 @@ impl FineOrders {
     /// About the median of a range of bins: that of its blocks' medians.
     fn median(&self, from: usize, to: usize) -> f64 {
         let (first, last) = (from / BLOCK, (to / BLOCK).min(self.medians.len() - 1));
-        median(&mut self.medians[first.min(last)..=last].to_vec())
+        upper_median(&self.medians[first.min(last)..=last])
     }
 
     /// The strongest line of a range of bins, its ends included.
@@ -197,14 +197,6 @@ impl FineOrders {
     /// Returns whether multiples of an order can be distinguished, also from those of the shaft.
     pub(super) fn resolves(&self, spacing: f64) -> bool {
         spacing * self.bins_per_order > (2 * (2 * LOBE + 1)) as f64
-    }
-}
-
-/// The upper median of values, which are reordered; 0 of none.
-fn median(values: &mut [f64]) -> f64 {
-    match values.len() / 2 {
-        middle if middle < values.len() => *values.select_nth_unstable_by(middle, f64::total_cmp).1,
-        _ => 0.0,
     }
 }
 

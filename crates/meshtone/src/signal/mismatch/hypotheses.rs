@@ -3,6 +3,7 @@
 use super::fine_orders::FineOrders;
 use super::{Alternative, CLEAR_MESH, Evidence, StatedFacts, StatedTurning};
 use crate::operation::greatest_common_divisor;
+use crate::signal::foreign_tones::is_of_mains;
 
 /// Mesh harmonics that are looked at, of the teeth that are stated: other counts have theirs in the same range, so that a multiple
 /// of the right one has fewer.
@@ -24,8 +25,6 @@ const SPEED_RANGE: f64 = 0.06;
 const LEAST_HIGHEST_ORDER: f64 = 1000.0;
 /// Steps of a comb's speed in one of the mesh lines'.
 const FINER: i32 = 16;
-/// (Hz) Mains frequencies.
-const MAINS_HZ: [f64; 2] = [50.0, 60.0];
 /// Harmonics that hum has.
 const MAINS_HARMONICS: f64 = 8.0;
 /// (bins) Distance from a harmonic of hum at which a line may be it.
@@ -115,12 +114,8 @@ impl Hypothesis {
         if !matches!(self.alternative, Alternative::Teeth { .. } | Alternative::ShaftSpeed { .. }) {
             return false;
         }
-        let mesh_hz = self.mesh_order * speed_hz;
         let near_hz = MAINS_BINS * speed_hz / orders.bins_per_order;
-        MAINS_HZ.into_iter().any(|mains_hz| {
-            let multiple = (mesh_hz / mains_hz).round().clamp(1.0, MAINS_HARMONICS);
-            (mesh_hz - multiple * mains_hz).abs() < near_hz
-        })
+        is_of_mains(self.mesh_order * speed_hz, MAINS_HARMONICS, near_hz)
     }
 
     /// Orders of the mesh harmonics with their prominences.

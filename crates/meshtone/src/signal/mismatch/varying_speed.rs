@@ -2,6 +2,7 @@
 
 use super::fine_orders::{FineOrders, affordable};
 use super::hypotheses::Hypothesis;
+use crate::signal::statistics::StraightLine;
 use crate::signal::{AngularSettings, AngularSignal, MeshTone, ShaftPhase, angular_resample};
 
 /// Harmonics whose tone is followed.
@@ -40,7 +41,7 @@ pub(super) fn varying_speed(
         let nyquist_order = followed.nyquist_order.min(angular.nyquist_order);
         let Some(along) = FineOrders::of(&AngularSignal { nyquist_order, ..followed }) else { continue };
         let others = |of: &FineOrders| -> f64 {
-            let is_other = |order: f64| (order - tone_order(&tone)).abs() > 0.5;
+            let is_other = |order: f64| (order - tone.per_revolution()).abs() > 0.5;
             let lines = as_stated.mesh_lines(of).filter(|(order, _)| is_other(*order));
             lines.map(|(_, prominence)| prominence.max(0.0)).sum()
         };
@@ -48,10 +49,6 @@ pub(super) fn varying_speed(
         variation = variation.or(Some(of_harmonic.of_speed));
     }
     variation.filter(|_| gain > LEAST_GAIN)
-}
-
-fn tone_order(tone: &MeshTone) -> f64 {
-    f64::from(tone.teeth * tone.harmonic)
 }
 
 /// Deviation of a phase from that of a constant speed.
@@ -67,13 +64,7 @@ struct PhaseDeviation {
 fn phase_deviation(phase: &ShaftPhase, points: usize) -> PhaseDeviation {
     // Once in each revolution.
     let turned: Vec<f64> = phase.revolutions.iter().step_by(points).copied().collect();
-    let middle = 0.5 * (turned.len() as f64 - 1.0);
-    let mean = turned.iter().sum::<f64>() / turned.len() as f64;
-    let along = |i: usize| i as f64 - middle;
-    let square: f64 = (0..turned.len()).map(|i| along(i).powi(2)).sum();
-    let slope = turned.iter().enumerate().map(|(i, angle)| along(i) * (angle - mean)).sum::<f64>() / square;
-    let off: f64 =
-        turned.iter().enumerate().map(|(i, angle)| (angle - mean - slope * along(i)).powi(2)).sum();
+    let StraightLine { slope, off, .. } = StraightLine::through(&turned);
     let steps = turned.windows(2).map(|pair| (pair[1] - pair[0] - slope).powi(2));
     PhaseDeviation {
         rms_rev: (off / turned.len() as f64).sqrt(),

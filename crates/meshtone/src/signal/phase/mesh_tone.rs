@@ -38,7 +38,7 @@ impl MeshTone {
         Self { teeth, shaft_hz, harmonic: 1, half_band_hz: None }
     }
 
-    pub(super) fn per_revolution(&self) -> f64 {
+    pub(in crate::signal) fn per_revolution(&self) -> f64 {
         f64::from(self.teeth) * f64::from(self.harmonic)
     }
 

@@ -4,7 +4,7 @@ use meshtone_fourier::Complex64;
 
 use super::mesh_tone::{Band, MeshTone};
 use crate::signal::check::{check_channel, check_count, check_positive, check_rate};
-use crate::signal::{SignalError, SignalWarning};
+use crate::signal::{SignalError, SignalWarning, upper_median};
 
 /// Least mean power in the band over the median around it.
 const LEAST_POWER_RATIO: f64 = 3.0;
@@ -54,10 +54,8 @@ pub(super) fn check_tone(
     let power = |bin: usize| spectrum[bin].norm_sqr();
     let mean = band.bins().map(power).sum::<f64>() / (2 * band.half + 1) as f64;
     let around = band.middle / 2..(band.middle + band.middle / 2).min(spectrum.len());
-    let mut noise: Vec<f64> = around.filter(|bin| !band.bins().contains(bin)).map(power).collect();
-    noise.sort_unstable_by(f64::total_cmp);
-    let median = noise.get(noise.len() / 2).copied().unwrap_or(0.0);
-    let ratio = if mean > 0.0 { mean / median } else { 0.0 };
+    let noise: Vec<f64> = around.filter(|bin| !band.bins().contains(bin)).map(power).collect();
+    let ratio = if mean > 0.0 { mean / upper_median(&noise) } else { 0.0 };
     if ratio < LEAST_POWER_RATIO {
         return Err(SignalError::NoMeshTone {
             frequency_hz: tone.frequency_hz(),

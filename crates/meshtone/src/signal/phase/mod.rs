@@ -1,6 +1,5 @@
 //! The angle of a shaft at each sample.
 
-mod constant;
 mod mesh_tone;
 mod mesh_tone_checks;
 mod pulse_train;

@@ -1,7 +1,7 @@
 //! Pulses in order, with none missing and none doubled.
 
 use crate::signal::check::{check_count, check_finite};
-use crate::signal::{SignalError, SignalWarning};
+use crate::signal::{SignalError, SignalWarning, upper_median};
 
 /// Number of intervals on each side that show how long an interval should be.
 const NEIGHBOURS: usize = 4;
@@ -80,9 +80,7 @@ pub fn repair_pulses(time_s: &[f64]) -> Result<PulseTrain, SignalError> {
 fn usual(intervals: &[f64], index: usize) -> f64 {
     let last = intervals.len() - 1;
     let from = index.min(last).saturating_sub(NEIGHBOURS);
-    let mut near = intervals[from..=(index + NEIGHBOURS).min(last)].to_vec();
-    near.sort_by(f64::total_cmp);
-    near[near.len() / 2]
+    upper_median(&intervals[from..=(index + NEIGHBOURS).min(last)])
 }
 
 fn check_order(time_s: &[f64]) -> Result<(), SignalError> {

@@ -6,7 +6,7 @@ use super::{NINETY_PERCENT, PASSED, PathError, PathSettings, at_steady_speed, se
 use crate::batch::{Control, KeepOf};
 use crate::scenario::Scenario;
 use crate::sensor::FrequencyResponse;
-use crate::signal::{AngularSettings, GearTrain, ShaftPhase, SignalError, angular_resample};
+use crate::signal::{AngularSettings, GearTrain, ShaftPhase, SignalError, StraightLine, angular_resample};
 use crate::simulate::Simulation;
 
 /// (1/s) Mean speeds of which the wander is known: the process has nothing faster.
@@ -161,15 +161,10 @@ fn wander_percent(recording: &InputRecording) -> Option<[f64; 3]> {
         return None;
     }
     let speeds: Vec<f64> = (0..count).map(|n| recording.speed_hz(n * step, (n + 1) * step)).collect();
-    let mean_hz = speeds.iter().sum::<f64>() / count as f64;
-    let from_middle = |n: usize| n as f64 - (count - 1) as f64 / 2.0;
-    let moment: f64 = (0..count).map(|n| from_middle(n).powi(2)).sum();
-    let rise =
-        speeds.iter().enumerate().map(|(n, speed)| from_middle(n) * (speed - mean_hz)).sum::<f64>() / moment;
-    let rest = |(n, speed): (usize, &f64)| (speed - mean_hz - rise * from_middle(n)).powi(2);
+    let StraightLine { mean: mean_hz, off, .. } = StraightLine::through(&speeds);
     // Speeds that follow each other are alike: a mean or a rise takes as much of their variance as of so many independent ones.
     let alike = (1.0 + CORRELATION) / (1.0 - CORRELATION);
-    let variance = speeds.iter().enumerate().map(rest).sum::<f64>() / (count as f64 - 2.0 * alike);
+    let variance = off / (count as f64 - 2.0 * alike);
     let deviation = OVER_MEANS * variance.sqrt() / mean_hz;
     let correlated = CORRELATION * CORRELATION;
     let independent = count as f64 * (1.0 - correlated) / (1.0 + correlated) - 2.0;

@@ -30,9 +30,11 @@ use crate::error::{Error, ScenarioError};
 use crate::random::{Draws, Purpose};
 use crate::scenario::{Scenario, ScenarioWheel, Sensor};
 use crate::sensor::{Channel, FrequencyResponse, ResponseInput};
-use crate::signal::{AngularSettings, GearTrain, SignalError, angular_resample, lines_off_shafts};
+use crate::signal::{
+    AngularSettings, GearTrain, SignalError, angular_resample, lines_off_shafts, upper_median,
+};
 use crate::simulate::Stages;
-use crate::solver::{Block, Output, Recorder};
+use crate::solver::Output;
 
 /// (s) What is simulated before a piece of a recording, for the vibration to settle.
 const SETTLING_S: f64 = 0.3;
@@ -308,9 +310,8 @@ fn noise_density(
     let density = |pair: &[f64]| {
         let (from, to) = (line_at(pair[0]), line_at(pair[1]));
         let off = (from..to).filter(|&line| lines.is_off[line]);
-        let mut squares: Vec<f64> = off.map(|line| lines.spectrum[line].norm_sqr()).collect();
-        squares.sort_by(f64::total_cmp);
-        squares.get(squares.len() / 2).map_or(0.0, |median| scale * median / MEDIAN_OF_SQUARES)
+        let squares: Vec<f64> = off.map(|line| lines.spectrum[line].norm_sqr()).collect();
+        scale * upper_median(&squares) / MEDIAN_OF_SQUARES
     };
     // Around each frequency as far as the next but one.
     let last = cells.frequency_hz.len() - 1;
@@ -453,18 +454,8 @@ struct KeepPowers<'a> {
     draws: usize,
 }
 
-/// The motion of the sensor's place.
-#[derive(Default)]
-struct Motion(Vec<f64>);
-
-impl Recorder for Motion {
-    fn record(&mut self, block: &Block) {
-        self.0.extend_from_slice(block.output(0));
-    }
-}
-
 impl Keep for KeepPowers<'_> {
-    type Recorder = Motion;
+    type Recorder = [Vec<f64>; 1];
     type Kept = Vec<f64>;
 
     fn outputs(&self, scenario: &Scenario) -> Result<Vec<Output>, ScenarioError> {
@@ -475,12 +466,12 @@ impl Keep for KeepPowers<'_> {
         self.cells.cells.len() * size_of::<f64>()
     }
 
-    fn recorder(&self, _: &Stages) -> Motion {
-        Motion::default()
+    fn recorder(&self, _: &Stages) -> Self::Recorder {
+        Self::Recorder::default()
     }
 
-    fn keep(&self, index: usize, stages: Stages, motion: Motion) -> Vec<f64> {
-        let shown = stages.shown(&Channel::leading(&stages.sensors), motion.0);
+    fn keep(&self, index: usize, stages: Stages, [motion]: Self::Recorder) -> Vec<f64> {
+        let shown = stages.shown(&Channel::leading(&stages.sensors), motion);
         let piece = index / self.draws;
         let rate_hz = stages.time.sampling_rate_hz;
         self.cells.powers(piece, &self.cells.spectra(piece, settled(&shown, rate_hz), rate_hz))

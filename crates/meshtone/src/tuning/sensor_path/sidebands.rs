@@ -4,7 +4,9 @@ use meshtone_fourier::real_spectrum;
 
 use super::drive::factor_of;
 use crate::scenario::{Coupled, GearboxShaft, Ripple, Scenario};
-use crate::signal::{AngularSignal, GearTrain, SignalError, synchronous_average, synchronous_part};
+use crate::signal::{
+    AngularSignal, GearTrain, SignalError, synchronous_average, synchronous_part, upper_median,
+};
 
 /// Orders of a shaft that are looked at.
 const MOST_ORDER: usize = 4;
@@ -130,8 +132,7 @@ impl RepeatedLines {
                     }
                 }
             }
-            squares.sort_by(f64::total_cmp);
-            (squares.len() >= FEWEST).then(|| squares[squares.len() / 2].sqrt())
+            (squares.len() >= FEWEST).then(|| upper_median(&squares).sqrt())
         };
         Ok(Some(Self { share, levels: sideband_orders(train).iter().map(level).collect() }))
     }
