@@ -6,6 +6,7 @@ use parquet::basic::Compression;
 use parquet::file::metadata::{ColumnChunkMetaData, FileMetaData};
 
 use super::assemble::assemble;
+use super::catalogue::USUAL_COMPRESSION;
 use super::error::Problem;
 use super::label::Label;
 use super::parquet_check::{check_depth, check_metadata};
@@ -15,9 +16,6 @@ use super::{Recording, RecordingOptions, memory_need};
 use crate::memory;
 use crate::signals::{GEARBOX_KEY, SCENARIO_KEY};
 use crate::table::{FoundColumn, FoundType, TableReader};
-
-/// Bytes of samples that a byte of a file may well stand for; memory for more is taken only as they come.
-const USUAL_COMPRESSION: u64 = 16;
 
 /// Opens a table whose metadata are possible.
 pub(super) fn table(mut file: File) -> Result<TableReader<File>, Problem> {
