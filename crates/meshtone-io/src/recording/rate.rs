@@ -1,7 +1,5 @@
 //! Sampling rates that a file states.
 
-use meshtone::signal::SAMPLING_RATES_HZ;
-
 use super::error::{Problem, names};
 use super::label::Label;
 use super::time::{Timing, readable, timing};
@@ -58,20 +56,6 @@ impl StatedRate {
 /// * `options` - of the recording
 /// * `present` - the columns of the file, for messages
 pub(super) fn decide(
-    stated: &[StatedRate],
-    timing: Option<(&str, Timing)>,
-    options: &RecordingOptions,
-    present: impl Fn() -> Vec<String>,
-) -> Result<(StatedRate, f64), Problem> {
-    let (rate, start_s) = stated_or_timed(stated, timing, options, present)?;
-    if SAMPLING_RATES_HZ.contains(&rate.rate_hz) {
-        return Ok((rate, start_s));
-    }
-    let problem = format!("a sampling rate of {:e} S/s; must be from 1e-6 to 1e12 S/s", rate.rate_hz);
-    Err(Problem::rate(&problem))
-}
-
-fn stated_or_timed(
     stated: &[StatedRate],
     timing: Option<(&str, Timing)>,
     options: &RecordingOptions,
