@@ -9,6 +9,10 @@ use crate::scene::{Element, Scene, ScenePoint};
 
 pub(crate) use crate::scene::Pixel;
 
+/// (px) Width of every figure.
+pub(crate) const WIDTH: u32 = 1600;
+/// (px) From the edge of most figures to their title and facts.
+pub(crate) const EDGE: f64 = 17.0;
 /// What separates facts in a line.
 pub(crate) const BETWEEN_FACTS: &str = "  ·  ";
 
@@ -21,6 +25,14 @@ pub(crate) struct Canvas {
 impl Canvas {
     pub(crate) fn new(width: u32, height: u32) -> Self {
         Self { scene: Scene { width, height, elements: Vec::new() }, labels: Vec::new() }
+    }
+
+    /// A figure with its title and the facts below it, both `edge` from its left and, shortened, from its right.
+    pub(crate) fn page(height: u32, edge: f64, title: &str, facts: &[String]) -> Self {
+        let mut canvas = Self::new(WIDTH, height);
+        let width = f64::from(WIDTH) - 2.0 * edge;
+        canvas.heading(edge, width, (36.0, title), (61.0, &facts.join(BETWEEN_FACTS)));
+        canvas
     }
 
     pub(crate) fn line(&mut self, from: Pixel, to: Pixel, stroke: Stroke) {
@@ -98,6 +110,11 @@ impl Canvas {
     pub(crate) fn finish(self, title: &str, description: &str) -> Figure {
         Figure::new(self.scene, title, description, self.labels)
     }
+}
+
+/// What a figure is and its facts in sentences, for readers who cannot see it.
+pub(crate) fn described(what: &str, facts: &[String]) -> String {
+    format!("{what} {}.", facts.join(", "))
 }
 
 fn places(points: &[Pixel]) -> Vec<ScenePoint> {

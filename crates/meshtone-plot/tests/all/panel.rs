@@ -109,9 +109,10 @@ fn panels_of_the_gallery_show_what_they_should() {
 #[test]
 fn the_png_has_the_panels_size() {
     let (_, scenario) = crate::support::gallery().remove(2);
-    let png = drawn(&scenario).png().unwrap();
+    let figure = drawn(&scenario);
+    let png = figure.png().unwrap();
     let mut reader = png::Decoder::new(std::io::Cursor::new(&png)).read_info().unwrap();
-    assert_eq!((reader.info().width, reader.info().height), (panel::WIDTH, panel::HEIGHT));
+    assert_eq!((reader.info().width, reader.info().height), figure.size_px());
     assert!(png.len() < 300_000, "{} bytes", png.len());
     // Neither blank nor without text: the title's corner has ink in it.
     let mut indices = vec![0; reader.output_buffer_size().unwrap()];
