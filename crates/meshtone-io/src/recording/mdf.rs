@@ -4,7 +4,7 @@
 
 use std::collections::HashSet;
 use std::fs::File;
-use std::io::{self, ErrorKind, Read, Seek, SeekFrom};
+use std::io::{self, Read, Seek, SeekFrom};
 use std::rc::Rc;
 
 use flate2::read::ZlibDecoder;
@@ -12,7 +12,7 @@ use flate2::read::ZlibDecoder;
 use super::array::read_records;
 use super::catalogue::{MAX_ARRAYS, USUAL_COMPRESSION};
 use super::error::Problem;
-use super::fields::{Fields, block};
+use super::fields::{Fields, block, invalid};
 use super::label::Label;
 use super::number::{NumberKind, Numbers};
 use super::rate::StatedRate;
@@ -427,7 +427,6 @@ fn unpacked(mut file: &File, part: Part) -> io::Result<Vec<u8>> {
     fields.u16()?;
     let (kind, _, width) = (fields.u8()?, fields.u8()?, fields.u32()? as usize);
     let (length, stored) = (fields.u64()?, fields.u64()?);
-    let invalid = |what: &str| io::Error::new(ErrorKind::InvalidData, what.to_owned());
     if length > LONGEST_UNPACKED || kind > 1 {
         return Err(invalid("a compressed block of an unknown kind, or of more than 16 MiB"));
     }
