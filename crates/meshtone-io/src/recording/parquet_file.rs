@@ -51,11 +51,7 @@ pub(super) fn read(file: File, options: &RecordingOptions) -> Result<Recording, 
     };
     let samples = selection.wanted.iter().map(read).collect::<Result<_, _>>()?;
     let mut recording = assemble(&labels, &selection, samples, &stated_rates(head), options)?;
-    if let Some((time, unit_s)) = selection.own_time {
-        // It is compared only: where it cannot be read, the stated rate counts all the same.
-        let times = read(&time).ok();
-        recording.warnings.extend(other_than_timed(&labels[time], times.as_ref(), unit_s, options));
-    }
+    recording.warnings.extend(other_than_timed(&labels, &selection, options, |column| read(&column)));
     let scenario_toml = table.text_of(SCENARIO_KEY).or_else(|| table.text_of(GEARBOX_KEY));
     Ok(Recording { scenario_toml: scenario_toml.map(str::to_owned), ..recording })
 }
