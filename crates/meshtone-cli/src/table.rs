@@ -127,7 +127,7 @@ fn faults(machine: &MachineSummary) -> String {
     });
     let spalls = machine.bearings.iter().flat_map(|bearing| {
         bearing.defects.iter().map(|of| {
-            let (width, race, severity) = (short(of.width_mm), of.race, of.severity);
+            let (width, race, severity) = (short(of.width_mm), of.place.name(), of.severity);
             format!("spall of {width} mm ({race}, severity {severity:.3}) on bearing {}", bearing.at)
         })
     });

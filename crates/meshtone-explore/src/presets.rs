@@ -47,7 +47,7 @@ presets! {
 #[cfg(test)]
 mod tests {
     use meshtone::scenario::Scenario;
-    use meshtone_io::scenario_file::read_scenario;
+    use meshtone_io::scenario_file::ScenarioFile;
 
     use super::*;
 
@@ -55,7 +55,8 @@ mod tests {
     fn presets_are_the_examples() {
         let examples = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples");
         for preset in presets() {
-            let example = read_scenario(&examples.join(format!("{}.toml", preset.name))).unwrap();
+            let example =
+                ScenarioFile::read(&examples.join(format!("{}.toml", preset.name))).unwrap().scenario;
             let own = Scenario::from_toml(preset.toml).unwrap();
             assert_eq!(own, example, "copy examples/{}.toml to src/presets", preset.name);
         }

@@ -6,20 +6,14 @@ use meshtone::signal::{
 
 use crate::Figure;
 use crate::drawing::{
-    Anchor, Area, Axes, BETWEEN_FACTS, Canvas, Colour, DOT_RADIUS, Fill, Sample, Stroke, TextStyle, Ticks,
-    axes, bands, colour, number,
+    Anchor, Area, Axes, Canvas, Colour, DOT_RADIUS, EDGE, Fill, NAME_LEFT, Sample, Stroke, TextStyle, Ticks,
+    axes, bands, colour, described, number,
 };
-
-/// (px) Size of the figure.
-pub const WIDTH: u32 = 1600;
 
 const KURTOGRAM: Area = Area::new(84.0, 118.0, 1400.0, 290.0);
 /// (px) The first spectrum, and how far the next ones are below it.
 const SPECTRUM: Area = Area::new(84.0, 492.0, 1492.0, 250.0);
 const SPECTRUM_STEP: f64 = 340.0;
-const NAME_LEFT: f64 = 56.0;
-/// (px) Where title and facts begin.
-const EDGE: f64 = 17.0;
 /// (px) From one row of names at the lines to the next: each kind of defect has its own.
 const NAME_ROW: f64 = 15.0;
 /// Orders that are shown, over the highest defect line.
@@ -70,8 +64,7 @@ pub struct BearingsFigure<'a> {
 pub fn draw(figure: &BearingsFigure) -> Figure {
     let BearingsFigure { title, facts, bearings, records, .. } = *figure;
     let below = SPECTRUM_STEP * bearings.len().max(1) as f64;
-    let mut canvas = Canvas::new(WIDTH, (SPECTRUM.top - 32.0 + below) as u32);
-    canvas.heading(EDGE, f64::from(WIDTH) - 2.0 * EDGE, (36.0, title), (61.0, &facts.join(BETWEEN_FACTS)));
+    let mut canvas = Canvas::page((SPECTRUM.top - 32.0 + below) as u32, EDGE, title, facts);
     kurtogram(&mut canvas, &records.kurtogram, records.band, records.kurtosis);
     let amplitude = match figure.amplitude_unit.filter(|unit| !unit.is_empty()) {
         Some(unit) => format!("Amplitude ({unit})"),
@@ -82,11 +75,9 @@ pub fn draw(figure: &BearingsFigure) -> Figure {
         let area = Area { top: SPECTRUM.top + number as f64 * SPECTRUM_STEP, ..SPECTRUM };
         self::spectrum(&mut canvas, area, (name, shaft), (spectrum, lines), &amplitude);
     }
-    let description = format!(
-        "Kurtogram of a recording, and the squared envelope spectrum of each bearing with its defect lines. {}.",
-        facts.join(", ")
-    );
-    canvas.finish(title, &description)
+    let what =
+        "Kurtogram of a recording, and the squared envelope spectrum of each bearing with its defect lines.";
+    canvas.finish(title, &described(what, facts))
 }
 
 /// The kurtosis in each band, the widest above, and the ends of the chosen one.
@@ -157,8 +148,7 @@ fn spectrum(
     axes.x_axis(canvas, &Ticks::nice(0.0, highest, 18), &format!("Order of {shaft}"));
     axes.y_axis(canvas, &Ticks::nice(y[0], y[1], 5), amplitude, NAME_LEFT);
     for line in lines {
-        let x = axes.px(line.order);
-        canvas.line((x, area.top), (x, area.bottom()), stroke(line.kind));
+        axes.vertical(canvas, line.order, stroke(line.kind));
     }
     axes.line(canvas, shown.into_iter(), CURVE);
     for (row, kind) in DefectKind::ALL.into_iter().enumerate() {

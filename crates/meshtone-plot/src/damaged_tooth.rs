@@ -149,9 +149,6 @@ pub(crate) fn turns(
     let pairs = (from - contact[1]).floor() as i64..(to - contact[0]).ceil() as i64;
     for pair in pairs.filter(|&pair| is_damaged(pair)) {
         let [start, end] = contact.map(|pitches| (pair as f64 + pitches).clamp(from, to));
-        if start >= end {
-            continue;
-        }
         match turns.last_mut() {
             _ if start >= end => {}
             Some(last) if last[1] >= start => last[1] = end,

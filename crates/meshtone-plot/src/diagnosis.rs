@@ -2,17 +2,11 @@
 
 use crate::Figure;
 use crate::drawing::{
-    Anchor, Area, Axes, BETWEEN_FACTS, Canvas, Entry, Fill, Sample, Stroke, TextStyle, Ticks, axes, colour,
-    legend, over,
+    Anchor, Area, Axes, Canvas, EDGE, Entry, Fill, NAME_LEFT, Sample, Stroke, TextStyle, Ticks, axes, colour,
+    described, legend, over,
 };
 
-/// (px) Size of the figure.
-pub const WIDTH: u32 = 1600;
-/// (px) Size of the figure.
-pub const HEIGHT: u32 = 1000;
-
-const EDGE: f64 = 17.0;
-const NAME_LEFT: f64 = 56.0;
+const HEIGHT: u32 = 1000;
 const SIGNALS: Area = Area::new(84.0, 118.0, 900.0, 330.0);
 const EXPLANATIONS: Area = Area::new(84.0, 532.0, 900.0, 418.0);
 const EXPLANATIONS_GAP: f64 = 30.0;
@@ -98,14 +92,12 @@ pub struct SeverityView<'a> {
 /// assert!(diagnosis::draw(&figure).svg().contains("missing-tooth"));
 /// ```
 pub fn draw(figure: &DiagnosisFigure) -> Figure {
-    let mut canvas = Canvas::new(WIDTH, HEIGHT);
-    let width = f64::from(WIDTH) - 2.0 * EDGE;
-    canvas.heading(EDGE, width, (36.0, figure.title), (61.0, &figure.facts.join(BETWEEN_FACTS)));
+    let mut canvas = Canvas::page(HEIGHT, EDGE, figure.title, figure.facts);
     recording(&mut canvas, figure);
     probabilities(&mut canvas, figure.kinds);
     severity(&mut canvas, figure);
     explanations(&mut canvas, figure);
-    canvas.finish(figure.title, &format!("What may be wrong with the gears. {}.", figure.facts.join(", ")))
+    canvas.finish(figure.title, &described("What may be wrong with the gears.", figure.facts))
 }
 
 /// Range and ticks of a revolution of the wheel: tooth k is from k − 1 to k.

@@ -1,6 +1,7 @@
 //! A finished figure.
 
-use crate::scene::Scene;
+use crate::drawing::TextStyle;
+use crate::scene::{Element, Scene, ScenePoint};
 use crate::{PlotError, palette_png, raster, svg};
 
 /// Name of the run's identity in the files.
@@ -13,7 +14,6 @@ const METADATA_BEFORE: &str = "<defs>";
 pub struct Figure {
     scene: Scene,
     svg: String,
-    labels: Vec<Label>,
     run: Option<String>,
 }
 
@@ -32,20 +32,29 @@ pub struct Label {
     pub bottom: f64,
 }
 
+/// Part of the font size by which letters rise above and fall below the baseline.
+const ASCENT: f64 = 0.76;
+const DESCENT: f64 = 0.22;
+
 impl Label {
-    /// Returns whether the boxes of two texts share more than an edge.
-    pub fn overlaps(&self, other: &Self) -> bool {
-        self.left < other.right
-            && other.left < self.right
-            && self.top < other.bottom
-            && other.top < self.bottom
+    fn new(at: ScenePoint, text: &str, style: TextStyle) -> Self {
+        let [x, y] = [at.x, at.y].map(|place| f64::from(place.px()));
+        let width = style.width(text);
+        let before = style.anchor.before(width);
+        let (up, down) = (ASCENT * style.size, DESCENT * style.size);
+        let (left, top, right, bottom) = if style.upwards {
+            (x - up, y + before - width, x + down, y + before)
+        } else {
+            (x - before, y - up, x - before + width, y + down)
+        };
+        Self { text: text.to_owned(), left, top, right, bottom }
     }
 }
 
 impl Figure {
-    pub(crate) fn new(scene: Scene, title: &str, description: &str, labels: Vec<Label>) -> Self {
+    pub(crate) fn new(scene: Scene, title: &str, description: &str) -> Self {
         let svg = svg::document(&scene, title, description);
-        Self { scene, svg, labels, run: None }
+        Self { scene, svg, run: None }
     }
 
     /// Returns the figure with the identity of the run that it shows in its files: in the SVG's element `metadata`,
@@ -93,7 +102,11 @@ impl Figure {
     }
 
     /// Every text of the figure and where it is.
-    pub fn labels(&self) -> &[Label] {
-        &self.labels
+    pub fn labels(&self) -> Vec<Label> {
+        let label = |element: &Element| match element {
+            Element::Text { at, text, style } => Some(Label::new(*at, text, *style)),
+            _ => None,
+        };
+        self.scene.elements.iter().filter_map(label).collect()
     }
 }

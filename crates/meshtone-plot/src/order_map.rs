@@ -4,19 +4,13 @@ use meshtone::signal::OrderMap;
 
 use crate::Figure;
 use crate::drawing::{
-    Area, Axes, BETWEEN_FACTS, Canvas, Fill, Pixel, Stroke, TextStyle, Ticks, axes, bands, colour,
+    Area, Axes, Canvas, EDGE, Fill, NAME_LEFT, Pixel, Stroke, TextStyle, Ticks, axes, bands, colour,
+    described,
 };
 
-/// (px) Size of the figure.
-pub const WIDTH: u32 = 1600;
-/// (px) Size of the figure.
-pub const HEIGHT: u32 = 900;
-
+const HEIGHT: u32 = 900;
 const MAP: Area = Area::new(84.0, 118.0, 1140.0, 710.0);
 const SPEED: Area = Area::new(1356.0, 118.0, 212.0, 710.0);
-const NAME_LEFT: f64 = 56.0;
-/// (px) Where title and facts begin.
-const EDGE: f64 = 17.0;
 /// (px) Width of a column of the map.
 const COLUMN: f64 = 2.0;
 /// (px) So much rectangles overlap, lest lines show between them.
@@ -65,8 +59,7 @@ pub fn draw(figure: &OrderMapFigure) -> Figure {
     let unit = figure.unit.filter(|unit| !unit.is_empty());
     let quantity = unit.map_or_else(|| "Amplitude".to_owned(), |unit| format!("Amplitude ({unit})"));
     let quantity = TextStyle::TICK.fitted(&quantity, QUANTITY_WIDTH);
-    let mut canvas = Canvas::new(WIDTH, HEIGHT);
-    canvas.heading(EDGE, f64::from(WIDTH) - 2.0 * EDGE, (36.0, title), (61.0, &facts.join(BETWEEN_FACTS)));
+    let mut canvas = Canvas::page(HEIGHT, EDGE, title, facts);
     let times_s: Vec<f64> = map.times_s.iter().map(|time_s| figure.start_s + time_s).collect();
     let edges_s = edges(&times_s);
     let time = axes::time_range([edges_s[0], edges_s[times_s.len()]]);
@@ -90,11 +83,10 @@ pub fn draw(figure: &OrderMapFigure) -> Figure {
     let words: Vec<String> = ends.iter().map(|end| crate::drawing::number(*end)).collect();
     bands::bar(&mut canvas, MAP, &quantity, (&bands::COLOURS, &words));
     speed(&mut canvas, wheel, (time, &seconds), &times_s, &map.speeds_hz);
-    let description = format!(
-        "Amplitudes of a recording over the order of the {wheel}’s shaft and over time, and the shaft’s speed. {}.",
-        facts.join(", ")
+    let what = format!(
+        "Amplitudes of a recording over the order of the {wheel}’s shaft and over time, and the shaft’s speed."
     );
-    canvas.finish(title, &description)
+    canvas.finish(title, &described(&what, facts))
 }
 
 /// The shaft's speed with the map's axis of time.

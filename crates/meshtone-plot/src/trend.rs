@@ -2,22 +2,17 @@
 
 use crate::Figure;
 use crate::drawing::{
-    Area, Axes, BETWEEN_FACTS, Canvas, Entry, Fill, Sample, Stroke, TextStyle, Ticks, axes, colour, legend,
+    Area, Axes, Canvas, EDGE, Entry, Fill, NAME_LEFT, Sample, Stroke, TextStyle, Ticks, WIDTH, axes, colour,
+    described, legend,
 };
 
-/// (px) Size of the figure.
-pub const WIDTH: u32 = 1600;
-/// (px) Size of the figure.
-pub const HEIGHT: u32 = 1000;
-
+const HEIGHT: u32 = 1000;
 const PLOTS: Area = Area::new(84.0, 118.0, 1492.0, 804.0);
 /// (px) Between columns and between rows of plots.
 const GAP: [f64; 2] = [101.0, 90.0];
 /// (px) For the legend beside the title.
 const LEGEND_WIDTH: f64 = 420.0;
-const NAME_LEFT: f64 = 56.0;
 const MARGIN: f64 = 0.08;
-const EDGE: f64 = 17.0;
 /// Beyond this many records every marker would touch the next.
 const MARKED: usize = 60;
 /// (px) Half of a marker's size.
@@ -116,17 +111,15 @@ pub struct Trend {
 /// assert!(trend::draw(&figure).svg().contains("FM4"));
 /// ```
 pub fn draw(figure: &TrendFigure) -> Figure {
-    let mut canvas = Canvas::new(WIDTH, HEIGHT);
-    let width = f64::from(WIDTH) - 2.0 * EDGE;
-    let title = TextStyle::TITLE.fitted(figure.title, width - LEGEND_WIDTH);
-    canvas.heading(EDGE, width, (36.0, &title), (61.0, &figure.facts.join(BETWEEN_FACTS)));
+    let title = TextStyle::TITLE.fitted(figure.title, f64::from(WIDTH) - 2.0 * EDGE - LEGEND_WIDTH);
+    let mut canvas = Canvas::page(HEIGHT, EDGE, &title, figure.facts);
     let named = figure.wheels.iter().zip(STROKES.into_iter().cycle());
     let entries: Vec<Entry> = named.map(|(name, stroke)| (Sample::Line(stroke), name.as_str())).collect();
     legend::row(&mut canvas, (PLOTS.right(), 34.0), &entries);
     for (trend, area) in figure.indicators.iter().zip(PLOTS.grid([3, 3], GAP, f64::INFINITY)) {
         indicator(&mut canvas, area, trend, figure);
     }
-    canvas.finish(figure.title, &format!("Indicators over a series of records. {}.", figure.facts.join(", ")))
+    canvas.finish(figure.title, &described("Indicators over a series of records.", figure.facts))
 }
 
 fn indicator(canvas: &mut Canvas, area: Area, trend: &Trend, figure: &TrendFigure) {

@@ -170,10 +170,11 @@ warning_kinds! {
 }
 
 /// Something about a scenario that can be simulated but deserves the user's attention.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 #[non_exhaustive]
 pub struct ScenarioWarning {
     /// Subject of the warning.
+    #[serde(rename = "code")]
     pub kind: WarningKind,
     /// Dotted key in the scenario file.
     pub key: String,

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use crate::support::Workplace;
 use meshtone::scenario::{Scenario, template};
-use meshtone_io::scenario_file::read_scenario;
+use meshtone_io::scenario_file::ScenarioFile;
 
 fn examples() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples")
@@ -26,7 +26,7 @@ const NAMES: [&str; 9] = [
 #[test]
 fn examples_are_the_cases_of_the_templates() {
     for name in NAMES {
-        let example = read_scenario(&examples().join(name).with_extension("toml")).unwrap();
+        let example = ScenarioFile::read(&examples().join(name).with_extension("toml")).unwrap().scenario;
         let mut case = Scenario::from_toml(&template(&name.replace('_', "-")).unwrap()).unwrap();
         if name == "through_face" {
             case.faults.clone_from(&example.faults);

@@ -3,7 +3,7 @@
 
 use crate::support::{Workplace, printed_json, stderr, stdout};
 use meshtone::scenario::{template, template_kinds, template_of_all_keys};
-use meshtone_io::scenario_file::read_scenario;
+use meshtone_io::scenario_file::ScenarioFile;
 use serde_json::Value;
 
 #[test]
@@ -15,13 +15,13 @@ fn every_kind_is_printed_and_can_be_read() {
         assert_eq!(all, template_of_all_keys(kind).unwrap());
         let file = format!("{kind}.toml");
         workplace.succeeds(&["init", kind, "-o", &file]).stdout("");
-        read_scenario(&workplace.path(&file)).unwrap();
+        ScenarioFile::read(&workplace.path(&file)).unwrap();
     }
     assert_eq!(stdout(&workplace.succeeds(&["init"])), template("healthy").unwrap());
     for rig in [&[][..], &["--rig", "uconn"]] {
         let gearbox = |more: &[&str], file: &str| {
             workplace.succeeds(&[&["init", "gearbox"], rig, more, &["-o", file]].concat());
-            read_scenario(&workplace.path(file)).unwrap()
+            ScenarioFile::read(&workplace.path(file)).unwrap().scenario
         };
         let [all, usual] =
             [(&["--all"][..], "all.toml"), (&[], "usual.toml")].map(|(more, file)| gearbox(more, file));

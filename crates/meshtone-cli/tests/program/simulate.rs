@@ -6,7 +6,7 @@ use crate::support::{Workplace, fast_and, fast_with, printed_json, stderr, stdou
 use meshtone::InstructionSet;
 use meshtone_io::recording::{RecordingOptions, read_recording};
 use meshtone_io::run_identity::RunIdentity;
-use meshtone_io::scenario_file::read_scenario;
+use meshtone_io::scenario_file::ScenarioFile;
 use meshtone_io::signals::read_signals;
 use meshtone_io::table::{FoundColumn, TableReader};
 use ndarray::{ArrayD, IxDyn};
@@ -25,7 +25,7 @@ fn signals_are_those_of_the_library() {
     workplace.write("worn.toml", fast_and("[quality]\ndin_grade = 7"));
     workplace.succeeds(&["simulate", "worn.toml", "-o", "out"]);
     assert_eq!(workplace.names("out"), ALL_FILES);
-    let scenario = read_scenario(&workplace.path("worn.toml")).unwrap();
+    let scenario = ScenarioFile::read(&workplace.path("worn.toml")).unwrap().scenario;
     let recorded = read_signals(&workplace.path("out/signals.parquet")).unwrap();
     assert_eq!(recorded.scenario, scenario.clone());
     assert_eq!(recorded.channels, meshtone::simulate(&scenario).unwrap().channels);
@@ -250,7 +250,7 @@ fn every_field_of_the_trace() {
     let workplace = Workplace::new();
     workplace.write("pit.toml", fast_and("[quality]\ndin_grade = 6\n[fault]\nkind = \"missing-tooth\""));
     workplace.succeeds(&["simulate", "pit.toml", "-o", "out", "--trace", "out/all.npz", "--no-panel"]);
-    let scenario = read_scenario(&workplace.path("pit.toml")).unwrap();
+    let scenario = ScenarioFile::read(&workplace.path("pit.toml")).unwrap().scenario;
     let (simulation, trace) = meshtone::trace(&scenario).unwrap();
     let mut archive = NpzReader::new(File::open(workplace.path("out/all.npz")).unwrap()).unwrap();
     assert_eq!(archive.names().unwrap().len(), trace.fields.len() + 1);

@@ -2,14 +2,14 @@
 
 use crate::support::{Workplace, fast_and, stderr};
 use meshtone::scenario::ScenarioFiles;
-use meshtone_io::scenario_file::{FilesBeside, read_scenario};
+use meshtone_io::scenario_file::{FilesBeside, ScenarioFile};
 
 #[test]
 fn wheels_are_those_that_the_scenario_draws() {
     let workplace = Workplace::new();
     workplace.write("worn.toml", fast_and("[quality]\ndin_grade = 9\n[fault]\nkind = \"missing-tooth\""));
     workplace.succeeds(&["wheels", "worn.toml", "-o", "wheels.npz"]).stdout("");
-    let scenario = read_scenario(&workplace.path("worn.toml")).unwrap();
+    let scenario = ScenarioFile::read(&workplace.path("worn.toml")).unwrap().scenario;
     let drawn = meshtone::stages(&scenario).unwrap().pairs[0].profile_errors.clone().unwrap();
     let written = FilesBeside::new(workplace.directory.path()).profile_errors("wheels.npz").unwrap();
     assert_eq!(written, drawn);

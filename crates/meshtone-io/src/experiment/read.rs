@@ -226,12 +226,14 @@ struct Tune {
 /// Reads what is tuned: the indicators that are compared, the bounds of the enhancement, and keys of the scenario with their ranges.
 /// Each key that is absent takes its default.
 fn tune(table: &TomlTable<'_>) -> ReadResult<Tune> {
-    let names = TuningIndicator::ALL.map(|indicator| (indicator.name(), indicator));
     let indicators = match table.optional("indicators") {
         None => vec![TuningIndicator::Rms, TuningIndicator::Kurtosis],
         Some(value) => {
-            let chosen =
-                value.array()?.iter().map(|value| value.choice(&names)).collect::<ReadResult<Vec<_>>>()?;
+            let chosen = value
+                .array()?
+                .iter()
+                .map(|value| value.choice(&TuningIndicator::NAMES))
+                .collect::<ReadResult<Vec<_>>>()?;
             if chosen.is_empty() {
                 return Err(value.error("names no indicator; must name one or more"));
             }

@@ -1,7 +1,7 @@
 //! The results as JSON.
 
-use meshtone::signal::{ForeignTone, Indicators, SignalWarning};
-use serde::{Serialize, Serializer};
+use meshtone::signal::{Indicators, SignalWarning};
+use serde::Serializer;
 use serde_json::{Map, Value, json};
 
 use super::{FORMAT_VERSION, IndicatorResults};
@@ -40,21 +40,6 @@ impl IndicatorResults {
             "warnings": warnings.collect::<Vec<_>>(),
         })
     }
-}
-
-/// Every tone with its frequency, its order of the input and its amplitude.
-pub(super) fn foreign_lines<S: Serializer>(
-    tones: &Option<Vec<ForeignTone>>,
-    serializer: S,
-) -> Result<S::Ok, S::Error> {
-    let tones = tones.as_ref().map(|tones| {
-        let line = |tone: &ForeignTone| {
-            let ForeignTone { frequency_hz, order, amplitude, part, .. } = tone;
-            json!({ "frequency_hz": frequency_hz, "order": order, "amplitude": amplitude, "part_of_energy": part })
-        };
-        tones.iter().map(line).collect::<Vec<_>>()
-    });
-    tones.serialize(serializer)
 }
 
 /// Every indicator by its name; what is not defined is null.

@@ -73,7 +73,6 @@ pub struct RecordingEntry {
     /// The zone of ISO 20816-3, A to D, in which that velocity lies, where class and mounting of the machine were stated.
     pub velocity_zone: Option<char>,
     /// Its tones that belong to no shaft and no mesh; none where they were not looked for.
-    #[serde(serialize_with = "json::foreign_lines")]
     pub foreign_lines: Option<Vec<ForeignTone>>,
     /// (-) Part of the orders at which a tone would belong to the shafts and meshes, since the recording does not distinguish it from theirs; none
     /// where foreign lines were not looked for.

@@ -2,14 +2,14 @@
 
 use std::path::PathBuf;
 
-use meshtone::signal::copies;
+use meshtone::signal::{SAMPLING_RATES_HZ, copies};
 
 use super::error::{Problem, names};
 use super::label::Label;
 use super::rate::{self, StatedRate};
 use super::selection::{Selection, matching, present};
 use super::time::timing;
-use super::unit::{conversion, volts_in};
+use super::unit::conversion;
 use super::{Channel, Recording, RecordingOptions, RecordingWarning};
 
 /// (S/s) Rate below which times without a unit are hardly seconds.
@@ -57,6 +57,10 @@ pub(super) fn assemble(
     };
     let (StatedRate { by: rate_by, rate_hz: sampling_rate_hz }, start_s) =
         rate::decide(stated, timing, options, || present(labels))?;
+    if !SAMPLING_RATES_HZ.contains(&sampling_rate_hz) {
+        let problem = format!("a sampling rate of {sampling_rate_hz:e} S/s; must be from 1e-6 to 1e12 S/s");
+        return Err(Problem::rate(&problem));
+    }
     let channel = |index: &usize| Channel {
         name: labels[*index].name.clone(),
         unit: labels[*index].unit.clone(),
@@ -183,7 +187,7 @@ impl Channel {
         let Channel { name, unit, samples } = self;
         let volts = match unit.as_deref() {
             None => 1.0,
-            Some(unit) => volts_in(unit).ok_or_else(|| {
+            Some(unit) => conversion(unit, "V").ok_or_else(|| {
                 format!(
                     "a sensitivity is given for channel {name}, but its unit is {unit}; a sensitivity divides volts"
                 )

@@ -82,11 +82,8 @@ pub(super) fn read_arrays(
     let recording = assemble(labels, &selection, samples, stated, options);
     let mut recording = recording.map_err(|problem| problem.with_numbers(&singles))?;
     recording.warnings.extend(zero_twins(labels, &selection));
-    if let Some((time, unit_s)) = selection.own_time {
-        // It is compared only: where it cannot be read, the stated rate counts all the same.
-        let times = catalogue.read(&[time], &mut read).unwrap_or_default();
-        recording.warnings.extend(rate::other_than_timed(&labels[time], times.first(), unit_s, options));
-    }
+    let times = |column: usize| Ok(catalogue.read(&[column], &mut read)?.concat());
+    recording.warnings.extend(rate::other_than_timed(labels, &selection, options, times));
     Ok(recording)
 }
 

@@ -4,6 +4,8 @@ use std::fmt::Display;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use zip::result::ZipError;
+
 /// Names of a list that a message shows; the others are counted.
 const NAMES_SHOWN: usize = 30;
 
@@ -69,6 +71,16 @@ pub(super) enum Problem {
 impl From<io::Error> for Problem {
     fn from(error: io::Error) -> Self {
         Self::Io(error)
+    }
+}
+
+impl From<ZipError> for Problem {
+    fn from(error: ZipError) -> Self {
+        match error {
+            ZipError::Io(error) => Self::Io(error),
+            // Its table of contents stands at the end.
+            other => Self::Broken(format!("{other}; is the file cut off?")),
+        }
     }
 }
 

@@ -50,6 +50,11 @@ impl<'b> Fields<'b> {
     }
 }
 
+/// The error of a file that does not follow the rules of its format.
+pub(super) fn invalid(problem: impl Into<String>) -> io::Error {
+    io::Error::new(ErrorKind::InvalidData, problem.into())
+}
+
 /// Bytes of a file, which must be there.
 pub(super) fn block(mut file: &File, at: u64, bytes: u64) -> io::Result<Vec<u8>> {
     file.seek(SeekFrom::Start(at))?;

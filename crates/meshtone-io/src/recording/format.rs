@@ -55,28 +55,30 @@ const FORMATS: [(RecordingFormat, &str, &[&str]); 10] = [
     (RecordingFormat::Mdf, "MDF", &["mf4", "mdf"]),
 ];
 
-/// First bytes that only files of one format have.
-const MARKS: [(&[u8], RecordingFormat); 9] = [
-    (b"PAR1", RecordingFormat::Parquet),
-    (b"\x93NUMPY", RecordingFormat::Npy),
-    (b"PK\x03\x04", RecordingFormat::Npz),
-    (b"PK\x05\x06", RecordingFormat::Npz),
-    (b"RIFF", RecordingFormat::Wav),
-    (HDF5, RecordingFormat::Hdf5),
-    (b"TDSm", RecordingFormat::Tdms),
-    (b"MDF     ", RecordingFormat::Mdf),
-    (b"UnFinMF ", RecordingFormat::Mdf),
+/// Bytes that only files of one format have, and where.
+const MARKS: [(usize, &[u8], RecordingFormat); 12] = [
+    (0, b"PAR1", RecordingFormat::Parquet),
+    (0, b"\x93NUMPY", RecordingFormat::Npy),
+    (0, b"PK\x03\x04", RecordingFormat::Npz),
+    (0, b"PK\x05\x06", RecordingFormat::Npz),
+    (0, b"RIFF", RecordingFormat::Wav),
+    (0, HDF5, RecordingFormat::Hdf5),
+    (0, b"TDSm", RecordingFormat::Tdms),
+    (0, b"MDF     ", RecordingFormat::Mdf),
+    (0, b"UnFinMF ", RecordingFormat::Mdf),
+    (MAT_VERSION_OFFSET, b"\x00\x01IM", RecordingFormat::Mat),
+    (MAT_VERSION_OFFSET, b"\x01\x00MI", RecordingFormat::Mat),
+    (HDF5_OFFSET, HDF5, RecordingFormat::Hdf5),
 ];
 
 /// First bytes of known formats that are not read: what they are, and how to convert them.
-const TO_CONVERT: [(&[&[u8]], &str, &str); 2] = [
-    (
-        &[b"RF64", b"riff"],
-        "a WAV file of more than 4 GiB (RF64 or Wave64)",
-        "cut it, for instance with `sox` or `ffmpeg`",
-    ),
-    (&[b"\xd0\xcf\x11\xe0"], "an Excel file (.xls)", "save it as CSV"),
+const TO_CONVERT: [(&[u8], &str, &str); 3] = [
+    (b"RF64", LARGE_WAV, CUT),
+    (b"riff", LARGE_WAV, CUT),
+    (b"\xd0\xcf\x11\xe0", "an Excel file (.xls)", "save it as CSV"),
 ];
+const LARGE_WAV: &str = "a WAV file of more than 4 GiB (RF64 or Wave64)";
+const CUT: &str = "cut it, for instance with `sox` or `ffmpeg`";
 
 impl RecordingFormat {
     /// The name of the format in messages.
@@ -105,10 +107,13 @@ pub(super) fn detect(
     if head.is_empty() {
         return Err(Problem::Refused("is empty (0 bytes)".to_string()));
     }
-    if let Some((what, how)) = to_convert(&head) {
+    if let Some((_, what, how)) = TO_CONVERT.iter().find(|(mark, ..)| head.starts_with(mark)) {
         return Err(Problem::convert(what, how));
     }
-    if let Some(format) = given.or_else(|| by_content(&head)) {
+    let is_marked = |at: usize, mark: &[u8]| head.get(at..).is_some_and(|behind| behind.starts_with(mark));
+    let marked = MARKS.iter().find(|(at, mark, _)| is_marked(*at, mark)).map(|(.., format)| *format);
+    let marked = marked.or_else(|| is_universal(&head).then_some(RecordingFormat::Universal));
+    if let Some(format) = given.or(marked) {
         return Ok(format);
     }
     let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default();
@@ -122,7 +127,8 @@ pub(super) fn detect(
             let kind = if binary { "binary" } else { "text" };
             let first: Vec<String> = head.iter().take(4).map(|byte| format!("{byte:02x}")).collect();
             let first = first.join(" ");
-            let found = if let Some(kind) = file_kind(path, &ending) {
+            let text = if ending == "toml" { read_text(path).ok() } else { None };
+            let found = if let Some(kind) = text.and_then(|text| FileKind::of(&text)) {
                 format!("it is {}, which `{} {}` reads", kind.in_words(), kind.reader(), path.display())
             } else if ending.is_empty() {
                 format!("it has no ending, and its {kind} begins with the bytes {first}")
@@ -132,35 +138,4 @@ pub(super) fn detect(
             Err(Problem::UnknownFormat(found))
         }
     }
-}
-
-/// What a file is that is written for another command.
-fn file_kind(path: &Path, ending: &str) -> Option<FileKind> {
-    if ending != "toml" {
-        return None;
-    }
-    FileKind::of(&read_text(path).ok()?)
-}
-
-fn by_content(head: &[u8]) -> Option<RecordingFormat> {
-    let marked = MARKS.iter().find(|(mark, _)| head.starts_with(mark)).map(|(_, format)| *format);
-    let of_matlab = || head.get(HDF5_OFFSET..).is_some_and(|behind| behind.starts_with(HDF5));
-    marked
-        .or_else(|| is_mat5(head).then_some(RecordingFormat::Mat))
-        .or_else(|| of_matlab().then_some(RecordingFormat::Hdf5))
-        .or_else(|| is_universal(head).then_some(RecordingFormat::Universal))
-}
-
-fn is_mat5(head: &[u8]) -> bool {
-    matches!(
-        head.get(MAT_VERSION_OFFSET..MAT_VERSION_OFFSET + 4),
-        Some([0, 1, b'I', b'M'] | [1, 0, b'M', b'I'])
-    )
-}
-
-/// Known formats that are not read: what they are, and how to convert them.
-fn to_convert(head: &[u8]) -> Option<(&'static str, &'static str)> {
-    let is_known = |marks: &[&[u8]]| marks.iter().any(|mark| head.starts_with(mark));
-    let known = TO_CONVERT.iter().find(|(marks, ..)| is_known(marks));
-    known.map(|(_, what, how)| (*what, *how))
 }

@@ -153,24 +153,17 @@ fn numbers_of(data_set: &Dataset) -> Result<Result<Numbers, String>, Problem> {
     }
     let kind = match data_set.datatype().map_err(Problem::broken)? {
         Datatype::FixedPoint { size, byte_order, layout } => {
-            let kind = match (size, layout.signed) {
-                (1, true) => NumberKind::I8,
-                (1, false) => NumberKind::U8,
-                (2, true) => NumberKind::I16,
-                (2, false) => NumberKind::U16,
-                (4, true) => NumberKind::I32,
-                (4, false) => NumberKind::U32,
-                (8, true) => NumberKind::I64,
-                (8, false) => NumberKind::U64,
-                _ => return Ok(Err(format!("integers of {size} bytes"))),
-            };
-            Some((kind, byte_order))
+            let class = if layout.signed { "int" } else { "uint" };
+            match NumberKind::of(class, 8 * size) {
+                Some(kind) => Some((kind, byte_order)),
+                None => return Ok(Err(format!("integers of {size} bytes"))),
+            }
         }
-        Datatype::FloatingPoint { size: 2, byte_order, layout } if layout.exponent_size == HALF_EXPONENT => {
-            Some((NumberKind::F16, byte_order))
+        Datatype::FloatingPoint { size, byte_order, layout }
+            if size != 2 || layout.exponent_size == HALF_EXPONENT =>
+        {
+            NumberKind::of("float", 8 * size).map(|kind| (kind, byte_order))
         }
-        Datatype::FloatingPoint { size: 4, byte_order, .. } => Some((NumberKind::F32, byte_order)),
-        Datatype::FloatingPoint { size: 8, byte_order, .. } => Some((NumberKind::F64, byte_order)),
         _ => None,
     };
     Ok(match (kind, class) {

@@ -4,7 +4,7 @@
 
 use std::collections::HashSet;
 use std::fs::File;
-use std::io::{self, ErrorKind, Read, Seek, SeekFrom};
+use std::io::{self, Read, Seek, SeekFrom};
 use std::rc::Rc;
 
 use flate2::read::ZlibDecoder;
@@ -12,7 +12,7 @@ use flate2::read::ZlibDecoder;
 use super::array::read_records;
 use super::catalogue::{MAX_ARRAYS, USUAL_COMPRESSION};
 use super::error::Problem;
-use super::fields::{Fields, block};
+use super::fields::{Fields, block, invalid};
 use super::label::Label;
 use super::number::{NumberKind, Numbers};
 use super::rate::StatedRate;
@@ -37,6 +37,8 @@ const VALUES: u8 = 0;
 const MASTER: u8 = 2;
 const VIRTUAL_MASTER: u8 = 3;
 const TIME: u8 = 1;
+/// Classes of numbers by their form, which has two values for each: those of both byte orders.
+const CLASSES: [&str; 3] = ["uint", "int", "float"];
 /// Bits of a group whose records have no fixed length, or whose time is another group's.
 const MIXED: u16 = 0b1001;
 /// Bits of a channel of which no number, or not every one, is valid.
@@ -306,8 +308,8 @@ impl Walk<'_> {
             let at_bit = (record_bytes - invalidation_bytes + invalid_bit / 8, 1 << (invalid_bit % 8));
             let mut unit = self.text(channel.link(6))?;
             let scale = self.scale(channel.link(4), &mut unit)?;
-            let numbers = number_kind(form, bits)
-                .filter(|kind| bit == 0 && before + byte + kind.size() <= record_bytes);
+            let stored = CLASSES.get(usize::from(form / 2)).and_then(|class| NumberKind::of(class, bits));
+            let numbers = stored.filter(|kind| bit == 0 && before + byte + kind.size() <= record_bytes);
             let numbers = numbers.map(|kind| {
                 let before = before + byte;
                 Numbers {
@@ -351,25 +353,6 @@ impl Walk<'_> {
             _ => None,
         })
     }
-}
-
-/// How numbers of a form are stored: whole numbers without and with sign, and floating point, each in both byte orders.
-fn number_kind(form: u8, bits: u32) -> Option<NumberKind> {
-    Some(match (form / 2, bits) {
-        (0, 8) => NumberKind::U8,
-        (0, 16) => NumberKind::U16,
-        (0, 32) => NumberKind::U32,
-        (0, 64) => NumberKind::U64,
-        (1, 8) => NumberKind::I8,
-        (1, 16) => NumberKind::I16,
-        (1, 24) => NumberKind::I24,
-        (1, 32) => NumberKind::I32,
-        (1, 64) => NumberKind::I64,
-        (2, 16) => NumberKind::F16,
-        (2, 32) => NumberKind::F32,
-        (2, 64) => NumberKind::F64,
-        _ => return None,
-    })
 }
 
 impl Group {
@@ -444,7 +427,6 @@ fn unpacked(mut file: &File, part: Part) -> io::Result<Vec<u8>> {
     fields.u16()?;
     let (kind, _, width) = (fields.u8()?, fields.u8()?, fields.u32()? as usize);
     let (length, stored) = (fields.u64()?, fields.u64()?);
-    let invalid = |what: &str| io::Error::new(ErrorKind::InvalidData, what.to_owned());
     if length > LONGEST_UNPACKED || kind > 1 {
         return Err(invalid("a compressed block of an unknown kind, or of more than 16 MiB"));
     }

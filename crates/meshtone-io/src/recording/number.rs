@@ -20,29 +20,35 @@ pub(crate) enum NumberKind {
 }
 
 /// Name and bytes of each kind, in their order.
-const NAMES_AND_SIZES: [(&str, usize); 12] = [
-    ("int8", 1),
-    ("uint8", 1),
-    ("int16", 2),
-    ("uint16", 2),
-    ("int24", 3),
-    ("int32", 4),
-    ("uint32", 4),
-    ("int64", 8),
-    ("uint64", 8),
-    ("float16", 2),
-    ("float32", 4),
-    ("float64", 8),
+const KINDS: [(NumberKind, &str, usize); 12] = [
+    (NumberKind::I8, "int8", 1),
+    (NumberKind::U8, "uint8", 1),
+    (NumberKind::I16, "int16", 2),
+    (NumberKind::U16, "uint16", 2),
+    (NumberKind::I24, "int24", 3),
+    (NumberKind::I32, "int32", 4),
+    (NumberKind::U32, "uint32", 4),
+    (NumberKind::I64, "int64", 8),
+    (NumberKind::U64, "uint64", 8),
+    (NumberKind::F16, "float16", 2),
+    (NumberKind::F32, "float32", 4),
+    (NumberKind::F64, "float64", 8),
 ];
 
 impl NumberKind {
+    /// The kind of a class of numbers, `int`, `uint` or `float`, of so many bits.
+    pub(crate) fn of(class: &str, bits: u32) -> Option<Self> {
+        let wanted = format!("{class}{bits}");
+        KINDS.iter().find(|(_, name, _)| *name == wanted).map(|(kind, ..)| *kind)
+    }
+
     /// Bytes of a number.
     pub(crate) fn size(self) -> usize {
-        NAMES_AND_SIZES[self as usize].1
+        KINDS[self as usize].2
     }
 
     pub(crate) fn name(self) -> &'static str {
-        NAMES_AND_SIZES[self as usize].0
+        KINDS[self as usize].1
     }
 }
 

@@ -8,7 +8,6 @@ use flate2::read::MultiGzDecoder;
 use zip::ZipArchive;
 
 use super::error::{Problem, names};
-use super::numpy::zip_failed;
 use super::workbook::sheet;
 use crate::memory;
 
@@ -49,9 +48,8 @@ fn layer(path: &Path, file: &mut File, most: u64) -> Result<Option<(PathBuf, Fil
     } else if head.starts_with(ZIP) {
         of_archive(path, file, most)?
     } else {
-        let utf8 =
-            byte_order(&head).map(|from_bytes| Utf8 { from: BufReader::new(&*file), from_bytes, half: None });
-        utf8.map(|utf8| Ok::<_, Problem>((path.to_owned(), written(utf8, most)?))).transpose()?
+        let text = byte_order(&head).map(|from_bytes| in_utf8(file, from_bytes, most)).transpose()?;
+        text.map(|text| (path.to_owned(), text))
     };
     file.rewind()?;
     Ok(inside)
@@ -59,11 +57,11 @@ fn layer(path: &Path, file: &mut File, most: u64) -> Result<Option<(PathBuf, Fil
 
 /// The only file of an archive; none of one of NumPy's arrays. Folders, and what macOS adds, do not count.
 fn of_archive(path: &Path, file: &File, most: u64) -> Result<Option<(PathBuf, File)>, Problem> {
-    let mut archive = ZipArchive::new(BufReader::new(file)).map_err(zip_failed)?;
+    let mut archive = ZipArchive::new(BufReader::new(file))?;
     let mut files: Vec<(usize, String)> = Vec::new();
     for index in 0..archive.len() {
-        let inside = archive.by_index(index).map_err(zip_failed)?;
-        let name = inside.name().map_err(zip_failed)?.into_owned();
+        let inside = archive.by_index(index)?;
+        let name = inside.name()?.into_owned();
         if name.ends_with(".npy") {
             return Ok(None);
         }
@@ -73,7 +71,7 @@ fn of_archive(path: &Path, file: &File, most: u64) -> Result<Option<(PathBuf, Fi
     }
     match files.as_slice() {
         [(index, name)] => {
-            let inside = written(archive.by_index(*index).map_err(zip_failed)?, most)?;
+            let inside = written(archive.by_index(*index)?, most)?;
             Ok(Some((path.with_file_name(Path::new(name).file_name().unwrap_or_default()), inside)))
         }
         // Of a table of Excel's the text has no ending that says otherwise.
@@ -153,32 +151,24 @@ fn byte_order(head: &[u8]) -> Option<fn([u8; 2]) -> u16> {
     }
 }
 
-/// Text in UTF-16, read as UTF-8.
-struct Utf8<R> {
-    from: R,
-    from_bytes: fn([u8; 2]) -> u16,
-    /// The first half of a character of four bytes.
-    half: Option<u16>,
-}
-
-impl<R: Read> Read for Utf8<R> {
-    /// As many characters as fit: one of two bytes becomes three at most. A buffer that does not hold one is an error.
-    fn read(&mut self, to: &mut [u8]) -> io::Result<usize> {
-        let mut bytes = Vec::new();
-        let most = (to.len().saturating_sub(4) / 4 * 2) as u64;
-        self.from.by_ref().take(most).read_to_end(&mut bytes)?;
-        let (pairs, rest) = bytes.as_chunks::<2>();
-        if !rest.is_empty() {
-            return Err(io::Error::new(ErrorKind::UnexpectedEof, "half a character"));
-        }
-        let units = pairs.iter().map(|pair| (self.from_bytes)(*pair));
-        let mut units: Vec<u16> = self.half.take().into_iter().chain(units).collect();
-        // The other half comes with the next bytes.
-        if bytes.len() as u64 == most && units.last().is_some_and(|unit| (0xd800..0xdc00).contains(unit)) {
-            self.half = units.pop();
-        }
-        let text = String::from_utf16_lossy(&units);
-        to.get_mut(..text.len()).ok_or(ErrorKind::InvalidInput)?.copy_from_slice(text.as_bytes());
-        Ok(text.len())
+/// Text in UTF-16 as a file of UTF-8.
+fn in_utf8(file: &File, from_bytes: fn([u8; 2]) -> u16, most: u64) -> Result<File, Problem> {
+    let bytes = file.metadata()?.len();
+    if !bytes.is_multiple_of(2) {
+        return Err(io::Error::new(ErrorKind::UnexpectedEof, "half a character").into());
     }
+    let mut from = BufReader::new(file);
+    let mut last = Ok(());
+    let units = (0..bytes / 2).map_while(|_| {
+        let mut pair = [0; 2];
+        last = from.read_exact(&mut pair);
+        last.is_ok().then(|| from_bytes(pair))
+    });
+    let mut to = Unpacked::new(most)?;
+    for letter in char::decode_utf16(units) {
+        let letter = letter.unwrap_or(char::REPLACEMENT_CHARACTER);
+        to.write(letter.encode_utf8(&mut [0; 4]).as_bytes())?;
+    }
+    last?;
+    to.finish()
 }

@@ -6,6 +6,7 @@ use parquet::basic::Compression;
 use parquet::file::metadata::{ColumnChunkMetaData, FileMetaData};
 
 use super::assemble::assemble;
+use super::catalogue::USUAL_COMPRESSION;
 use super::error::Problem;
 use super::label::Label;
 use super::parquet_check::{check_depth, check_metadata};
@@ -15,9 +16,6 @@ use super::{Recording, RecordingOptions, memory_need};
 use crate::memory;
 use crate::signals::{GEARBOX_KEY, SCENARIO_KEY};
 use crate::table::{FoundColumn, FoundType, TableReader};
-
-/// Bytes of samples that a byte of a file may well stand for; memory for more is taken only as they come.
-const USUAL_COMPRESSION: u64 = 16;
 
 /// Opens a table whose metadata are possible.
 pub(super) fn table(mut file: File) -> Result<TableReader<File>, Problem> {
@@ -53,11 +51,7 @@ pub(super) fn read(file: File, options: &RecordingOptions) -> Result<Recording, 
     };
     let samples = selection.wanted.iter().map(read).collect::<Result<_, _>>()?;
     let mut recording = assemble(&labels, &selection, samples, &stated_rates(head), options)?;
-    if let Some((time, unit_s)) = selection.own_time {
-        // It is compared only: where it cannot be read, the stated rate counts all the same.
-        let times = read(&time).ok();
-        recording.warnings.extend(other_than_timed(&labels[time], times.as_ref(), unit_s, options));
-    }
+    recording.warnings.extend(other_than_timed(&labels, &selection, options, |column| read(&column)));
     let scenario_toml = table.text_of(SCENARIO_KEY).or_else(|| table.text_of(GEARBOX_KEY));
     Ok(Recording { scenario_toml: scenario_toml.map(str::to_owned), ..recording })
 }

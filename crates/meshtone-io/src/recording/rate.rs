@@ -1,9 +1,8 @@
 //! Sampling rates that a file states.
 
-use meshtone::signal::SAMPLING_RATES_HZ;
-
 use super::error::{Problem, names};
 use super::label::Label;
+use super::selection::Selection;
 use super::time::{Timing, readable, timing};
 use super::{RecordingOptions, RecordingWarning};
 
@@ -63,20 +62,6 @@ pub(super) fn decide(
     options: &RecordingOptions,
     present: impl Fn() -> Vec<String>,
 ) -> Result<(StatedRate, f64), Problem> {
-    let (rate, start_s) = stated_or_timed(stated, timing, options, present)?;
-    if SAMPLING_RATES_HZ.contains(&rate.rate_hz) {
-        return Ok((rate, start_s));
-    }
-    let problem = format!("a sampling rate of {:e} S/s; must be from 1e-6 to 1e12 S/s", rate.rate_hz);
-    Err(Problem::rate(&problem))
-}
-
-fn stated_or_timed(
-    stated: &[StatedRate],
-    timing: Option<(&str, Timing)>,
-    options: &RecordingOptions,
-    present: impl Fn() -> Vec<String>,
-) -> Result<(StatedRate, f64), Problem> {
     if let Some(rate_hz) = options.sampling_rate_hz {
         return Ok((StatedRate { by: "the stated rate".to_owned(), rate_hz }, 0.0));
     }
@@ -110,19 +95,22 @@ pub(super) fn other_than_stated(
     other(&own.by, own.rate_hz, AGREEMENT, options)
 }
 
-/// The warning that a time column gives another rate than the options. Without a unit it may be in ms or µs.
+/// The warning that the file's own time column gives another rate than the options. Without a unit it may be in ms or µs. It is compared
+/// only: where it cannot be read, the stated rate counts all the same.
 ///
 /// # Arguments
-/// * `label`, `times`, `unit_s` - the column, as far as it could be read
-/// * `options` - of the recording
+/// * `labels`, `selection`, `options` - of the recording
+/// * `read` - reads a column
 pub(super) fn other_than_timed(
-    label: &Label,
-    times: Option<&Vec<f64>>,
-    unit_s: f64,
+    labels: &[Label],
+    selection: &Selection,
     options: &RecordingOptions,
+    read: impl FnOnce(usize) -> Result<Vec<f64>, Problem>,
 ) -> Option<RecordingWarning> {
-    let times = times.filter(|times| times.iter().all(|time| time.is_finite()))?;
-    let (rate_hz, uncertainty) = match timing(&label.raw, times, unit_s) {
+    let (column, unit_s) = selection.own_time?;
+    let label = &labels[column];
+    let times = read(column).ok().filter(|times| times.iter().all(|time| time.is_finite()))?;
+    let (rate_hz, uncertainty) = match timing(&label.raw, &times, unit_s) {
         Ok(Timing { rate_hz, uncertainty, .. }) => (rate_hz, uncertainty),
         // Times with a gap have no rate, but so many samples in their span.
         Err(_) => {

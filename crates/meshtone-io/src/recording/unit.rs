@@ -1,4 +1,4 @@
-//! Units, where they matter: whether a word in parentheses is one, time and voltage, and which ones convert into each other.
+//! Units, where they matter: whether a word in parentheses is one, time, and which ones convert into each other.
 
 /// Symbols that measurements come in. What follows a prefix is in [`PREFIXED`].
 const PLAIN: [&str; 34] = [
@@ -32,17 +32,6 @@ pub(super) fn seconds_in(unit: &str) -> Option<f64> {
         "ns" | "nsec" | "nanoseconds" => Some(1e-9),
         "min" | "minutes" => Some(60.0),
         "h" | "hours" => Some(3600.0),
-        _ => None,
-    }
-}
-
-/// (V) One unit of voltage, if the unit is one of voltage.
-pub(super) fn volts_in(unit: &str) -> Option<f64> {
-    match unit.trim() {
-        "V" | "v" | "volt" | "Volt" | "volts" | "Volts" => Some(1.0),
-        "mV" => Some(1e-3),
-        "uV" | "µV" | "μV" => Some(1e-6),
-        "kV" => Some(1e3),
         _ => None,
     }
 }

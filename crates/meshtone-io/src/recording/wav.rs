@@ -42,7 +42,7 @@ struct Format {
 pub(super) fn read(file: File, options: &RecordingOptions) -> Result<Recording, Problem> {
     let file_bytes = file.metadata()?.len();
     let mut from = BufReader::new(file);
-    let Samples { format, comment, bytes } = find_samples(&mut from)?;
+    let (format, comment, bytes) = find_samples(&mut from)?;
     if bytes > file_bytes {
         let problem = format!("it announces {bytes} bytes of samples, but ends after {file_bytes}");
         return Err(Problem::Broken(problem));
@@ -55,30 +55,29 @@ pub(super) fn read(file: File, options: &RecordingOptions) -> Result<Recording, 
         )));
     }
     let layout = ArrayLayout { channels, samples: bytes / record_bytes, interleaved: channels > 1 };
-    let labels: Vec<Label> = match &comment {
-        Some(comment) => comment.channels.iter().map(|channel| channel.label()).collect(),
-        None => (1..=channels).map(|number| Label::numbered("channel", number)).collect(),
+    let (labels, full_scales, by, rate_hz): (Vec<Label>, Vec<f64>, _, _) = match &comment {
+        Some(WavComment { channels, sampling_rate_hz, .. }) => {
+            let scaled = channels.iter().map(|channel| (channel.label(), channel.full_scale)).unzip();
+            (scaled.0, scaled.1, "its comment", *sampling_rate_hz)
+        }
+        None => {
+            let labels = (1..=channels).map(|number| Label::numbered("channel", number)).collect();
+            (labels, vec![1.0; channels], "its header", f64::from(format.rate_hz))
+        }
     };
     let selection = select(&labels, options)?;
     memory_need::check(memory::limit(), options, &selection, |_| layout.samples, 0)?;
     let wanted: Vec<bool> =
         (0..channels).map(|channel| selection.wanted.binary_search(&channel).is_ok()).collect();
     let mut samples = read_channels(&mut from, layout, format.numbers, &wanted, bytes)?;
-    if format.full_scale != 1.0 {
-        let scaled = samples.iter_mut().flatten();
-        scaled.for_each(|sample| *sample = (*sample - format.zero) / format.full_scale);
-    }
-    let Some(comment) = comment else {
-        let stated = [StatedRate { by: "its header".to_string(), rate_hz: f64::from(format.rate_hz) }];
-        return assemble(&labels, &selection, samples, &stated, options);
-    };
     for (&channel, samples) in selection.wanted.iter().zip(&mut samples) {
-        let full_scale = comment.channels[channel].full_scale;
-        samples.iter_mut().for_each(|sample| *sample *= full_scale);
+        let (zero, full_scale) = (format.zero, format.full_scale);
+        samples.iter_mut().for_each(|sample| *sample = (*sample - zero) / full_scale * full_scales[channel]);
     }
-    let stated = [StatedRate { by: "its comment".to_string(), rate_hz: comment.sampling_rate_hz }];
+    let stated = [StatedRate { by: by.to_owned(), rate_hz }];
     let recording = assemble(&labels, &selection, samples, &stated, options)?;
-    Ok(Recording { start_s: comment.start_s, ..recording })
+    let start_s = comment.map_or(recording.start_s, |comment| comment.start_s);
+    Ok(Recording { start_s, ..recording })
 }
 
 impl WavChannel {
@@ -102,15 +101,8 @@ impl WavComment {
     }
 }
 
-/// The samples that a file has.
-struct Samples {
-    format: Format,
-    comment: Option<WavComment>,
-    bytes: u64,
-}
-
-/// Goes to the samples.
-fn find_samples(from: &mut BufReader<File>) -> Result<Samples, Problem> {
+/// Goes to the samples, and returns their format, the comment, and how many bytes they have.
+fn find_samples(from: &mut BufReader<File>) -> Result<(Format, Option<WavComment>, u64), Problem> {
     let mut riff = [0; 12];
     from.read_exact(&mut riff)?;
     if !(riff.starts_with(b"RIFF") && riff.ends_with(b"WAVE")) {
@@ -138,7 +130,7 @@ fn find_samples(from: &mut BufReader<File>) -> Result<Samples, Problem> {
                 }
                 comment = WavComment::of_list(&list, &format).or(comment);
             }
-            (b"data", Some(format)) => return Ok(Samples { format, comment, bytes: length }),
+            (b"data", Some(format)) => return Ok((format, comment, length)),
             (b"data", None) => return Err(Problem::broken("it has samples, but no format before them")),
             _ => {}
         }

@@ -8,7 +8,6 @@ use quick_xml::events::{BytesStart, Event};
 use zip::ZipArchive;
 
 use super::error::{Problem, names};
-use super::numpy::zip_failed;
 use super::packed::Unpacked;
 use super::text::date_of;
 
@@ -38,14 +37,14 @@ pub(super) fn sheet(archive: &mut ZipArchive<impl Read + Seek>, most: u64) -> Re
     let mut texts = Texts::default();
     for (name, part) in [(STRINGS, &mut texts as &mut dyn Part), (STYLES, &mut styles)] {
         if all.iter().any(|other| other == name) {
-            walk(archive.by_name(name).map_err(zip_failed)?, most, part)?;
+            walk(archive.by_name(name)?, most, part)?;
         }
     }
     let mut sheets = Vec::new();
     let mut left = most;
     for name in all.iter().filter(|name| name.starts_with(SHEETS) && name.ends_with(".xml")) {
         let mut sheet = Sheet::new(&texts.all, &styles.shown, Unpacked::new(left)?);
-        walk(archive.by_name(name).map_err(zip_failed)?, most, &mut sheet)?;
+        walk(archive.by_name(name)?, most, &mut sheet)?;
         left = sheet.to.left;
         sheets.push((sheet.numbers, name.clone(), sheet.to));
     }

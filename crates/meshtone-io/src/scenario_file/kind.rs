@@ -45,34 +45,32 @@ impl FileKind {
         found.next().filter(|_| found.next().is_none()).map(|(_, kind)| kind)
     }
 
+    /// What such a file is, the command that reads it, and the one that writes one to start from.
+    fn words(self) -> [&'static str; 3] {
+        match self {
+            Self::Scenario => ["a scenario", "meshtone simulate", "meshtone init healthy -o FILE"],
+            Self::Plan => ["the plan of a data set", "meshtone dataset", "meshtone init dataset -o FILE"],
+            Self::Experiment => ["an experiment", "meshtone tune", "meshtone init experiment -o FILE"],
+            Self::Tuned => {
+                let reader = "meshtone enhance SCENARIO.toml --tuned";
+                ["what `meshtone tune` found", reader, "meshtone tune EXPERIMENT.toml"]
+            }
+        }
+    }
+
     /// What such a file is.
     pub fn in_words(self) -> &'static str {
-        match self {
-            Self::Scenario => "a scenario",
-            Self::Plan => "the plan of a data set",
-            Self::Experiment => "an experiment",
-            Self::Tuned => "what `meshtone tune` found",
-        }
+        self.words()[0]
     }
 
     /// The command that reads such a file.
     pub fn reader(self) -> &'static str {
-        match self {
-            Self::Scenario => "meshtone simulate",
-            Self::Plan => "meshtone dataset",
-            Self::Experiment => "meshtone tune",
-            Self::Tuned => "meshtone enhance SCENARIO.toml --tuned",
-        }
+        self.words()[1]
     }
 
     /// The command that writes such a file to start from.
     pub fn writer(self) -> &'static str {
-        match self {
-            Self::Scenario => "meshtone init healthy -o FILE",
-            Self::Plan => "meshtone init dataset -o FILE",
-            Self::Experiment => "meshtone init experiment -o FILE",
-            Self::Tuned => "meshtone tune EXPERIMENT.toml",
-        }
+        self.words()[2]
     }
 }
 

@@ -10,7 +10,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use meshtone::scenario::{
-    FileProblem, FrequencyResponse, Profile, ProfileErrors, Scenario, ScenarioFiles, WheelDeviations,
+    FileProblem, FrequencyResponse, Profile, ProfileErrors, ScenarioFiles, WheelDeviations,
 };
 use meshtone_toml::TomlError;
 
@@ -51,28 +51,6 @@ pub enum ReadScenarioError {
         /// What is wrong, with key and line.
         error: Box<TomlError>,
     },
-}
-
-/// Reads and validates a scenario file, and the files that it names.
-///
-/// # Arguments
-/// * `path` - the scenario file; names of other files in it are relative to its directory
-///
-/// # Errors
-/// The file cannot be read or is not UTF-8 text, or [`Scenario::from_toml_with_files`] refuses it.
-///
-/// ```
-/// use meshtone::scenario::template;
-/// use meshtone_io::scenario_file::read_scenario;
-///
-/// let directory = tempfile::tempdir()?;
-/// let path = directory.path().join("healthy.toml");
-/// std::fs::write(&path, template("healthy").unwrap())?;
-/// assert_eq!(read_scenario(&path)?.wheels[0].teeth, 17);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-pub fn read_scenario(path: &Path) -> Result<Scenario, ReadScenarioError> {
-    Ok(ScenarioFile::read(path)?.scenario)
 }
 
 /// The files that a scenario names, relative to a directory.

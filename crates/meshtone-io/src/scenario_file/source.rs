@@ -29,7 +29,18 @@ impl ScenarioFile {
     /// * `path` - the scenario file; names of other files in it are relative to its directory
     ///
     /// # Errors
-    /// Those of [`super::read_scenario`].
+    /// The file cannot be read or is not UTF-8 text, or [`Scenario::from_toml_with_files`] refuses it.
+    ///
+    /// ```
+    /// use meshtone::scenario::template;
+    /// use meshtone_io::scenario_file::ScenarioFile;
+    ///
+    /// let directory = tempfile::tempdir()?;
+    /// let path = directory.path().join("healthy.toml");
+    /// std::fs::write(&path, template("healthy").unwrap())?;
+    /// assert_eq!(ScenarioFile::read(&path)?.scenario.wheels[0].teeth, 17);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn read(path: &Path) -> Result<Self, ReadScenarioError> {
         Self::read_checked(path, |_| Ok(()))
     }

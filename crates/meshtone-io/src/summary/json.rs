@@ -4,7 +4,6 @@ use std::io::{self, Write};
 use std::time::Duration;
 
 use meshtone::damage::{FaultyTeeth, QuantityValue};
-use meshtone::scenario::ScenarioWarning;
 use meshtone::sensor::ChannelKind;
 use meshtone::signal::{IndicatorValue, Indicators};
 use meshtone::wheel::WheelName;
@@ -92,15 +91,6 @@ pub(super) fn times<S: Serializer>(stages: &[(String, Duration)], serializer: S)
     let total = ("total".to_string(), stages.iter().map(|(_, elapsed)| *elapsed).sum());
     let stages = stages.iter().map(|(stage, time)| (stage.replace(' ', "_"), *time)).chain([total]);
     serializer.collect_map(stages.map(|(stage, time)| (stage, time.as_micros() as f64 / 1e3)))
-}
-
-pub(super) fn warnings<S: Serializer>(
-    warnings: &[ScenarioWarning],
-    serializer: S,
-) -> Result<S::Ok, S::Error> {
-    serializer.collect_seq(warnings.iter().map(
-        |warning| json!({ "code": warning.kind.code(), "key": warning.key, "message": warning.message }),
-    ))
 }
 
 pub(super) fn is_vertical(channel: &str) -> bool {

@@ -6,6 +6,7 @@ use meshtone::scenario::Gears;
 use meshtone::sensor::{ContactFigures, SignalSource};
 use meshtone::signal::GearTrain;
 use serde::Serialize;
+use serde_json::{Map, Value, json};
 
 /// A mesh.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -166,37 +167,17 @@ impl TransmissionError {
 }
 
 /// What stands beside the list of meshes where there is one: the same numbers, as files of one pair have them.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[non_exhaustive]
-pub struct OneMesh {
-    /// Samples per revolution of the driving wheel, at the nominal speed.
-    pub samples_per_pinion_revolution: usize,
-    /// [`MeshSummary::contact_ratio`].
-    pub contact_ratio: f64,
-    /// [`MeshSummary::helix`].
-    pub helix: Option<HelixSummary>,
-    /// [`MeshSummary::face_load_factor`].
-    pub face_load_factor: Option<f64>,
-    /// [`MeshSummary::mesh_stiffness`].
-    pub mesh_stiffness: MeshStiffness,
-    /// [`MeshSummary::mesh_force`].
-    pub mesh_force: MeshForce,
-}
-
-impl OneMesh {
-    /// The numbers of the only mesh; none where there are several.
-    pub(super) fn of(meshes: &[MeshSummary], samples_per_pinion_revolution: usize) -> Option<Self> {
-        let [mesh] = meshes else { return None };
-        let MeshSummary { contact_ratio, helix, face_load_factor, mesh_stiffness, mesh_force, .. } = *mesh;
-        Some(Self {
-            samples_per_pinion_revolution,
-            contact_ratio,
-            helix,
-            face_load_factor,
-            mesh_stiffness,
-            mesh_force,
-        })
-    }
+pub(super) fn of_one_mesh(
+    meshes: &[MeshSummary],
+    samples_per_pinion_revolution: usize,
+) -> Map<String, Value> {
+    const SHARED: [&str; 5] = ["contact_ratio", "helix", "face_load_factor", "mesh_stiffness", "mesh_force"];
+    let [mesh] = meshes else { return Map::new() };
+    let mesh = json!(mesh);
+    let mut numbers = Map::new();
+    numbers.insert("samples_per_pinion_revolution".to_owned(), json!(samples_per_pinion_revolution));
+    numbers.extend(SHARED.map(|key| (key.to_owned(), mesh[key].clone())));
+    numbers
 }
 
 /// Smallest value, mean and largest value.

@@ -8,9 +8,9 @@ mod json;
 mod mesh;
 mod planetary;
 
-pub use bearing::{BearingOrders, BearingSummary, DefectSummary};
+pub use bearing::BearingSummary;
 pub use json::write_json;
-pub use mesh::{HelixSummary, MeshForce, MeshStiffness, MeshSummary, OneMesh, TransmissionError};
+pub use mesh::{HelixSummary, MeshForce, MeshStiffness, MeshSummary, TransmissionError};
 pub use planetary::SetSummary;
 
 use std::path::Path;
@@ -26,7 +26,7 @@ use meshtone::signal::{
 use meshtone::wheel::WheelName;
 use meshtone::{Simulation, Stages};
 use serde::Serialize;
-use serde_json::Value;
+use serde_json::{Map, Value};
 
 use crate::ReadResultsError;
 use crate::input_file::read_document;
@@ -57,9 +57,9 @@ pub struct Summary {
     /// What was simulated.
     #[serde(flatten)]
     pub machine: MachineSummary,
-    /// The numbers of the mesh, where there is one only.
+    /// The samples per revolution of the driving wheel and the numbers of the mesh, where there is one only.
     #[serde(flatten)]
-    pub one_mesh: Option<OneMesh>,
+    pub one_mesh: Map<String, Value>,
     /// Main numbers of each signal, by the name of its column; sensors first.
     #[serde(serialize_with = "json::channels")]
     pub channels: Vec<ChannelSummary>,
@@ -70,7 +70,6 @@ pub struct Summary {
     #[serde(rename = "computing_time_ms", serialize_with = "json::times")]
     pub computing_time: Vec<(String, Duration)>,
     /// What deserves attention.
-    #[serde(serialize_with = "json::warnings")]
     pub warnings: Vec<ScenarioWarning>,
 }
 
@@ -172,16 +171,6 @@ impl ShaftSummary {
 }
 
 impl FaultSummary {
-    fn new(fault: &Fault, wheel: &str, severity: f64) -> Self {
-        Self {
-            kind: fault.damage.kind(),
-            wheel: wheel.to_owned(),
-            tooth: fault.tooth.clone(),
-            severity,
-            pitted_teeth: Vec::new(),
-        }
-    }
-
     /// The faults of teeth.
     fn all(stages: &Stages, train: &GearTrain) -> Vec<Self> {
         let faults = stages.scenario.placed_faults().into_iter().zip(&stages.fault_severities).enumerate();
@@ -195,8 +184,11 @@ impl FaultSummary {
                 .collect()
         };
         let summary = |(number, ((wheel, fault), &severity)): (usize, ((usize, &Fault), &f64))| Self {
+            kind: fault.damage.kind(),
+            wheel: train.wheels[wheel].name.clone(),
+            tooth: fault.tooth.clone(),
+            severity,
             pitted_teeth: pitted(wheel, number),
-            ..Self::new(fault, &train.wheels[wheel].name, severity)
         };
         faults.map(summary).collect()
     }
@@ -302,7 +294,7 @@ impl Summary {
             sampling_rate_hz: channels.sampling_rate_hz,
             samples: channels.len(),
             start_s: channels.start_s,
-            one_mesh: OneMesh::of(&machine.meshes, machine.samples_per_input_revolution),
+            one_mesh: mesh::of_one_mesh(&machine.meshes, machine.samples_per_input_revolution),
             machine,
             channels: ChannelSummary::all(channels),
             averaged: AveragedSignal::of(stages, channels),

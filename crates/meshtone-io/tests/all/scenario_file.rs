@@ -5,7 +5,7 @@ use std::fs::{self, File};
 
 use meshtone::scenario::{Model, ProfileErrors, Scenario, ScenarioError, template};
 use meshtone::wheel::ErrorTable;
-use meshtone_io::scenario_file::{ReadScenarioError, read_scenario, write_wheels_npz};
+use meshtone_io::scenario_file::{ReadScenarioError, ScenarioFile, write_wheels_npz};
 use ndarray::{Array1, Array2, ArrayView2, ShapeBuilder};
 use ndarray_npy::NpzWriter;
 use tempfile::{TempDir, tempdir};
@@ -16,7 +16,7 @@ const REQUIRED: &str = "[gears]\nmodule_mm = 3.0\npinion_teeth = 17\ngear_teeth 
 fn read_with(directory: &TempDir, lines: &str) -> Result<Scenario, ReadScenarioError> {
     let path = directory.path().join("scenario.toml");
     fs::write(&path, format!("{REQUIRED}{lines}\n")).unwrap();
-    read_scenario(&path)
+    Ok(ScenarioFile::read(&path)?.scenario)
 }
 
 fn with_errors(directory: &TempDir) -> Result<Scenario, ReadScenarioError> {
@@ -72,7 +72,7 @@ fn scenario_files_are_read() {
     let directory = tempdir().unwrap();
     let path = directory.path().join("breakage.toml");
     fs::write(&path, template("tooth-breakage").unwrap()).unwrap();
-    let scenario = read_scenario(&path).unwrap();
+    let scenario = ScenarioFile::read(&path).unwrap().scenario;
     assert_eq!(scenario, Scenario::from_toml(&template("tooth-breakage").unwrap()).unwrap());
 }
 
@@ -80,11 +80,11 @@ fn scenario_files_are_read() {
 fn scenario_files_that_cannot_be_read() {
     let directory = tempdir().unwrap();
     let path = directory.path().join("absent.toml");
-    let error = read_scenario(&path).unwrap_err();
+    let error = ScenarioFile::read(&path).unwrap_err();
     assert!(matches!(error, ReadScenarioError::Unreadable { .. }));
     assert!(error.to_string().contains("absent.toml"), "{error}");
     fs::write(&path, [0x67, 0xff, 0xfe]).unwrap();
-    let error = read_scenario(&path).unwrap_err();
+    let error = ScenarioFile::read(&path).unwrap_err();
     assert!(error.to_string().contains("UTF-8"), "{error}");
 }
 

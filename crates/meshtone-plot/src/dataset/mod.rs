@@ -8,9 +8,8 @@ mod indicators;
 mod keys;
 
 use crate::Figure;
-use crate::drawing::{Area, Canvas, Colour, Entry, Fill, Sample, Stroke, colour, legend};
+use crate::drawing::{Area, Canvas, Colour, Entry, Fill, Sample, Stroke, WIDTH, colour, legend};
 
-const WIDTH: u32 = 1600;
 const HEIGHT: u32 = 1000;
 /// (px) Left edge of title and facts.
 const TEXT_LEFT: f64 = 15.0;

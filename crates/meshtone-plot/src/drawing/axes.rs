@@ -75,6 +75,8 @@ pub(crate) const NAME_BELOW: f64 = 36.0;
 const NUMBERS_LEFT: f64 = 8.0;
 /// (px) From the numbers to the baseline of the axis' name on their left.
 const NAME_GAP: f64 = 6.0;
+/// (px) From the frame to the baseline of the vertical axis' name, in most figures.
+pub(crate) const NAME_LEFT: f64 = 56.0;
 /// (px) From the frame up to the baseline of the title.
 pub(crate) const TITLE_ABOVE: f64 = 8.0;
 
@@ -175,10 +177,10 @@ impl Axes {
 
     /// Grid lines and ticks of the horizontal axis.
     pub(crate) fn x_grid(&self, canvas: &mut Canvas, ticks: &Ticks) {
-        let (top, bottom) = (self.area.top, self.area.bottom());
+        let bottom = self.area.bottom();
         for &value in &ticks.values {
             let x = self.px(value);
-            canvas.line((x, top), (x, bottom), GRID);
+            self.vertical(canvas, value, GRID);
             canvas.line((x, bottom), (x, bottom + TICK_LENGTH), FRAME);
         }
     }
@@ -246,6 +248,10 @@ impl Axes {
 
     pub(crate) fn horizontal(&self, canvas: &mut Canvas, y: f64, stroke: Stroke) {
         canvas.line((self.area.left, self.py(y)), (self.area.right(), self.py(y)), stroke);
+    }
+
+    pub(crate) fn vertical(&self, canvas: &mut Canvas, x: f64, stroke: Stroke) {
+        canvas.line((self.px(x), self.area.top), (self.px(x), self.area.bottom()), stroke);
     }
 
     /// A filled part of the horizontal axis, cut at the frame.

@@ -4,23 +4,34 @@
 //! scales across neighbouring axes, hatching, and where each text ends.
 
 use super::style::{Fill, Stroke, TextStyle, colour};
-use crate::figure::{Figure, Label};
+use crate::figure::Figure;
 use crate::scene::{Element, Scene, ScenePoint};
 
 pub(crate) use crate::scene::Pixel;
 
+/// (px) Width of every figure.
+pub(crate) const WIDTH: u32 = 1600;
+/// (px) From the edge of most figures to their title and facts.
+pub(crate) const EDGE: f64 = 17.0;
 /// What separates facts in a line.
 pub(crate) const BETWEEN_FACTS: &str = "  ·  ";
 
 /// A figure in the making.
 pub(crate) struct Canvas {
     scene: Scene,
-    labels: Vec<Label>,
 }
 
 impl Canvas {
     pub(crate) fn new(width: u32, height: u32) -> Self {
-        Self { scene: Scene { width, height, elements: Vec::new() }, labels: Vec::new() }
+        Self { scene: Scene { width, height, elements: Vec::new() } }
+    }
+
+    /// A figure with its title and the facts below it, both `edge` from its left and, shortened, from its right.
+    pub(crate) fn page(height: u32, edge: f64, title: &str, facts: &[String]) -> Self {
+        let mut canvas = Self::new(WIDTH, height);
+        let width = f64::from(WIDTH) - 2.0 * edge;
+        canvas.heading(edge, width, (36.0, title), (61.0, &facts.join(BETWEEN_FACTS)));
+        canvas
     }
 
     pub(crate) fn line(&mut self, from: Pixel, to: Pixel, stroke: Stroke) {
@@ -65,9 +76,7 @@ impl Canvas {
 
     /// Text whose baseline starts, has its middle or ends at `at`.
     pub(crate) fn text(&mut self, at: Pixel, text: &str, style: TextStyle) {
-        let text = shown(text);
-        self.labels.push(label(at, &text, style));
-        self.scene.elements.push(Element::Text { at: at.into(), text, style });
+        self.scene.elements.push(Element::Text { at: at.into(), text: shown(text), style });
     }
 
     /// The figure's title and the line of facts below it, each with its baseline and shortened to `width`.
@@ -96,8 +105,13 @@ impl Canvas {
     ///
     /// `title` and `description` are for readers who cannot see it.
     pub(crate) fn finish(self, title: &str, description: &str) -> Figure {
-        Figure::new(self.scene, title, description, self.labels)
+        Figure::new(self.scene, title, description)
     }
+}
+
+/// What a figure is and its facts in sentences, for readers who cannot see it.
+pub(crate) fn described(what: &str, facts: &[String]) -> String {
+    format!("{what} {}.", facts.join(", "))
 }
 
 fn places(points: &[Pixel]) -> Vec<ScenePoint> {
@@ -109,22 +123,6 @@ fn places(points: &[Pixel]) -> Vec<ScenePoint> {
 fn shown(text: &str) -> String {
     let words = text.split_whitespace().map(|word| word.replace(char::is_control, ""));
     words.collect::<Vec<_>>().join(" ")
-}
-
-/// Part of the font size by which letters rise above and fall below the baseline.
-const ASCENT: f64 = 0.76;
-const DESCENT: f64 = 0.22;
-
-fn label((x, y): Pixel, text: &str, style: TextStyle) -> Label {
-    let width = style.width(text);
-    let before = style.anchor.before(width);
-    let (up, down) = (ASCENT * style.size, DESCENT * style.size);
-    let (left, top, right, bottom) = if style.upwards {
-        (x - up, y + before - width, x + down, y + before)
-    } else {
-        (x - before, y - up, x - before + width, y + down)
-    };
-    Label { text: text.to_owned(), left, top, right, bottom }
 }
 
 #[cfg(test)]

@@ -10,8 +10,8 @@ pub(crate) enum Sample {
     Line(Stroke),
     Area(Fill),
     Dots(Fill),
-    /// A marker, on a line where there is one.
-    Marker(Option<Stroke>, Marker),
+    /// A marker on a line.
+    Marker(Stroke, Marker),
 }
 
 /// A sample and what it stands for.
@@ -55,9 +55,7 @@ fn draw(canvas: &mut Canvas, (x, y): Pixel, (sample, text): &Entry) {
             canvas.dots(&dots, DOT_RADIUS, fill);
         }
         Sample::Marker(stroke, marker) => {
-            if let Some(stroke) = stroke {
-                canvas.line((x, middle), (x + SAMPLE_WIDTH, middle), stroke);
-            }
+            canvas.line((x, middle), (x + SAMPLE_WIDTH, middle), stroke);
             marker.draw(canvas, (x + SAMPLE_WIDTH / 2.0, middle));
         }
         Sample::Area(fill) => canvas.rectangle((x, middle - 5.0), (x + SAMPLE_WIDTH, middle + 5.0), fill),

@@ -10,8 +10,8 @@ mod style;
 mod text;
 mod ticks;
 
-pub(crate) use axes::{Area, Axes, over};
-pub(crate) use canvas::{BETWEEN_FACTS, Canvas, Pixel};
+pub(crate) use axes::{Area, Axes, NAME_LEFT, over};
+pub(crate) use canvas::{BETWEEN_FACTS, Canvas, EDGE, Pixel, WIDTH, described};
 pub(crate) use legend::{Entry, Sample};
 pub(crate) use marker::{DIAMOND, Marker, SQUARE, TRIANGLE};
 pub(crate) use style::{

@@ -12,13 +12,13 @@ use meshtone::{Simulation, Stages};
 use super::side::Side;
 use super::spectrum::{self, InputSpectrum};
 use super::{
-    BELOW_HEADING, CIRCLE_NAMES, COLUMN_GAP, COLUMN_WIDTH, FULL_WIDTH, LEFT, NAME_LEFT, TEETH_HEIGHT, WIDTH,
+    BELOW_HEADING, CIRCLE_NAMES, COLUMN_GAP, COLUMN_WIDTH, EDGE, FULL_WIDTH, LEFT, NAME_LEFT, TEETH_HEIGHT,
     column_left, heading, teeth, tooth,
 };
 use crate::damaged_tooth::{self, DamagedTooth};
 use crate::drawing::{
-    Anchor, Area, Axes, BETWEEN_FACTS, Canvas, Fill, Pixel, Stroke, TextStyle, Ticks, axes, colour, number,
-    over,
+    Anchor, Area, Axes, Canvas, Fill, Pixel, Stroke, TextStyle, Ticks, axes, capitalised, colour, described,
+    number, over,
 };
 use crate::{Figure, PlotError};
 
@@ -52,11 +52,8 @@ pub(super) fn draw(gearbox: &Scenario, simulation: &Simulation) -> Result<Figure
     let wheels = Wheels::of(gearbox, stages)?;
     let wheels_top = TRAIN_TOP + TRAIN_HEIGHT;
     let spectrum_top = wheels_top + wheels.height() + ROW_GAP;
-    let mut canvas = Canvas::new(WIDTH, (spectrum_top + SPECTRUM_HEIGHT + FOOT) as u32);
-    let title = title(gearbox);
-    let facts = facts(gearbox, stages);
-    let edge = LEFT - NAME_LEFT - 11.0;
-    canvas.heading(edge, f64::from(WIDTH) - 2.0 * edge, (36.0, &title), (61.0, &facts.join(BETWEEN_FACTS)));
+    let (title, facts) = (title(gearbox), facts(gearbox, stages));
+    let mut canvas = Canvas::page((spectrum_top + SPECTRUM_HEIGHT + FOOT) as u32, EDGE, &title, &facts);
     let half = (FULL_WIDTH - COLUMN_GAP) / 2.0;
     let train = drawn_wheels(gearbox, stages);
     let [front, above] =
@@ -65,12 +62,9 @@ pub(super) fn draw(gearbox: &Scenario, simulation: &Simulation) -> Result<Figure
     draw_above(&mut canvas, above, (gearbox, stages), &train);
     wheels.draw(&mut canvas, wheels_top, gearbox, simulation);
     spectrum(&mut canvas, Area::new(LEFT, spectrum_top, FULL_WIDTH, SPECTRUM_HEIGHT), (gearbox, simulation));
-    let description = format!(
-        "Results panel of a simulated gearbox: the train from the front and from above, teeth, mesh stiffness and \
-         averages of its wheels, and the spectrum of a sensor in orders of the input. {}.",
-        facts.join(", ")
-    );
-    Ok(canvas.finish(&title, &description))
+    let what = "Results panel of a simulated gearbox: the train from the front and from above, teeth, mesh stiffness and \
+                averages of its wheels, and the spectrum of a sensor in orders of the input.";
+    Ok(canvas.finish(&title, &described(what, &facts)))
 }
 
 fn title(gearbox: &Scenario) -> String {
@@ -85,7 +79,7 @@ fn title(gearbox: &Scenario) -> String {
             .iter()
             .map(move |of| format!("{} spall on bearing {at}", of.race.kind().replace('-', " ")))
     });
-    let faults = crate::drawing::capitalised(&faults.chain(spalls).collect::<Vec<_>>().join(", "));
+    let faults = capitalised(&faults.chain(spalls).collect::<Vec<_>>().join(", "));
     if faults.is_empty() { "Healthy gearbox".to_owned() } else { faults }
 }
 

@@ -5,31 +5,16 @@ use meshtone::scenario::{Gears, Hand, Scenario};
 
 use super::damage;
 use super::side::Side;
-use crate::drawing::{BETWEEN_FACTS, Canvas, Pixel, TextStyle, number};
+use crate::drawing::{Canvas, Pixel, TextStyle, WIDTH, number};
 use crate::{DamagedTooth, damaged_tooth};
 
-/// (px) From the panel's edge to the headings.
-const EDGE: f64 = super::LEFT - super::NAME_LEFT - 11.0;
 /// (px) Width of the headings.
-const ROOM: f64 = super::WIDTH as f64 - 2.0 * EDGE;
+const ROOM: f64 = WIDTH as f64 - 2.0 * super::EDGE;
 
 /// The faults and their sizes.
 pub(super) fn title(scenario: &Scenario, stages: &Stages) -> String {
     let title = damage::title(scenario, stages, |text| TextStyle::TITLE.width(text) <= ROOM);
     TextStyle::TITLE.fitted(&title, ROOM)
-}
-
-/// The panel in a sentence, for readers who cannot see it.
-pub(super) fn description(scenario: &Scenario) -> String {
-    format!(
-        "Results panel of a simulated gear pair: teeth, tooth faces, profile errors, averages over the \
-         shafts' revolutions and mesh stiffness. {}.",
-        facts(scenario).join(", ")
-    )
-}
-
-pub(super) fn draw(canvas: &mut Canvas, title: &str, scenario: &Scenario) {
-    canvas.heading(EDGE, ROOM, (36.0, title), (61.0, &facts(scenario).join(BETWEEN_FACTS)));
 }
 
 pub(super) fn column(canvas: &mut Canvas, (left, baseline): Pixel, width: f64, side: &Side) {
@@ -38,7 +23,7 @@ pub(super) fn column(canvas: &mut Canvas, (left, baseline): Pixel, width: f64, s
     canvas.section((left, baseline), width, &text, 8.0);
 }
 
-fn facts(scenario: &Scenario) -> Vec<String> {
+pub(super) fn facts(scenario: &Scenario) -> Vec<String> {
     let gears = &scenario.gears();
     let operation = &scenario.operation;
     let speeds_hz = operation.speed_profile_hz.as_ref().map(|profile| &profile.value[..]);

@@ -20,21 +20,18 @@ use meshtone::sensor::Channels;
 use meshtone::wheel::WheelName;
 use meshtone::{Simulation, Stages};
 
-use crate::drawing::{Area, Canvas, Pixel};
+use crate::drawing::{Area, Canvas, NAME_LEFT, Pixel, described};
 use crate::{Figure, PlotError};
 use side::Side;
 
-/// (px) Size of the panel.
-pub const WIDTH: u32 = 1600;
-/// (px) Size of the panel.
-pub const HEIGHT: u32 = 1240;
+const HEIGHT: u32 = 1240;
+/// (px) From the panel's edge to title and facts.
+const EDGE: f64 = 7.0;
 
 const LEFT: f64 = 74.0;
 const COLUMN_WIDTH: f64 = 710.0;
 const COLUMN_GAP: f64 = 82.0;
 const FULL_WIDTH: f64 = 2.0 * COLUMN_WIDTH + COLUMN_GAP;
-/// (px) From the frame of a plot to the baseline of its vertical axis' name.
-const NAME_LEFT: f64 = 56.0;
 
 /// (px) From the baseline of a column's heading to its teeth.
 const BELOW_HEADING: f64 = 38.0;
@@ -84,9 +81,8 @@ pub fn draw(simulation: &Simulation) -> Result<Figure, PlotError> {
 }
 
 fn draw_pair(scenario: &Scenario, stages: &Stages, channels: &Channels) -> Result<Figure, PlotError> {
-    let mut canvas = Canvas::new(WIDTH, HEIGHT);
-    let title = heading::title(scenario, stages);
-    heading::draw(&mut canvas, &title, scenario);
+    let (title, facts) = (heading::title(scenario, stages), heading::facts(scenario));
+    let mut canvas = Canvas::page(HEIGHT, EDGE, &title, &facts);
     for (column, wheel) in WheelName::BOTH.into_iter().enumerate() {
         teeth(&mut canvas, (column_left(column), TEETH_TOP), &Side::new(stages, wheel)?);
     }
@@ -98,7 +94,9 @@ fn draw_pair(scenario: &Scenario, stages: &Stages, channels: &Channels) -> Resul
         stages,
         channels,
     );
-    Ok(canvas.finish(&title, &heading::description(scenario)))
+    let what = "Results panel of a simulated gear pair: teeth, tooth faces, profile errors, averages over the shafts' \
+                revolutions and mesh stiffness.";
+    Ok(canvas.finish(&title, &described(what, &facts)))
 }
 
 fn column_left(column: usize) -> f64 {

@@ -86,11 +86,11 @@ impl InputSpectrum<'_> {
         axes.x_axis(canvas, &Ticks::nice(0.0, highest, 16), &format!("Order of the {shaft}"));
         axes.y_axis(canvas, &Ticks::nice(y[0], y[1], 5), &format!("Amplitude ({unit})"), NAME_LEFT);
         for order in &self.shafts {
-            upright(canvas, &axes, order.abs(), SHAFT_LINE);
+            axes.vertical(canvas, order.abs(), SHAFT_LINE);
         }
         for (name, order) in &self.meshes {
             for harmonic in (1..).take_while(|harmonic| f64::from(*harmonic) * order <= highest) {
-                upright(canvas, &axes, f64::from(harmonic) * order, MESH_LINE);
+                axes.vertical(canvas, f64::from(harmonic) * order, MESH_LINE);
             }
             let style = TextStyle::NOTE.coloured(colour::VERMILLION).with_halo();
             let text = format!("{name} {}", number(*order));
@@ -106,8 +106,4 @@ impl InputSpectrum<'_> {
         axes.legend(canvas, &entries);
         axes.frame(canvas);
     }
-}
-
-fn upright(canvas: &mut Canvas, axes: &Axes, x: f64, stroke: Stroke) {
-    canvas.line((axes.px(x), axes.area.top), (axes.px(x), axes.area.bottom()), stroke);
 }

@@ -10,23 +10,19 @@ mod teeth;
 
 use meshtone::signal::Record;
 
-use crate::drawing::{Area, Axes, BETWEEN_FACTS, Canvas, Stroke, TextStyle, Ticks, axes, colour, number};
+use crate::drawing::{
+    Area, Axes, BETWEEN_FACTS, Canvas, EDGE, NAME_LEFT, Stroke, TextStyle, Ticks, WIDTH, axes, colour, number,
+};
 use crate::{DamagedTooth, Figure};
 
-/// (px) Size of the figure.
-pub const WIDTH: u32 = 1600;
 /// (px) Height of the figure of one or two wheels.
-pub const HEIGHT: u32 = 1200;
+const HEIGHT: u32 = 1200;
 /// (px) By how much each further row of two wheels makes it higher.
 const ROW_HEIGHT: u32 = 952;
 
 const LEFT: f64 = 84.0;
 const RIGHT: f64 = 1576.0;
 const COLUMN_GAP: f64 = 92.0;
-/// (px) From the frame of a plot to the baseline of its vertical axis' name.
-const NAME_LEFT: f64 = 56.0;
-/// (px) Where title and facts begin.
-const EDGE: f64 = 17.0;
 const SIGNAL: Area = Area::new(LEFT, 100.0, RIGHT - LEFT, 130.0);
 const HEADING_BASELINE: f64 = 302.0;
 /// (px) Upper and lower edges of the plots of each wheel.

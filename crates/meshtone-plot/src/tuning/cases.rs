@@ -64,8 +64,7 @@ impl CasesPlot {
         let ticks = Ticks::nice(y[0], y[1], numbers.clamp(2, 6)).thinned(most);
         axes.y_axis(canvas, &ticks, "", super::NAME_LEFT);
         for case in 1..cases {
-            let x = axes.px(case as f64 - 0.5);
-            canvas.line((x, area.top), (x, area.bottom()), NAMES);
+            axes.vertical(canvas, case as f64 - 0.5, NAMES);
         }
         Self { axes, cases }
     }

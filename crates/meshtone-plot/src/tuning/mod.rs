@@ -12,11 +12,10 @@ mod symbols;
 
 use meshtone::tuning::{Experiment, ExperimentResult};
 
-use crate::drawing::{Area, Canvas};
+use crate::drawing::{Area, Canvas, WIDTH};
 use crate::{Figure, PlotError};
 use data::Data;
 
-const WIDTH: u32 = 1600;
 /// With two rows of difference signals; each more makes the figure higher by [`MORE_SIGNALS`].
 const HEIGHT: u32 = 1000;
 const MORE_SIGNALS: u32 = 136;

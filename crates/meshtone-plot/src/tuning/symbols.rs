@@ -12,7 +12,7 @@ pub(super) struct Symbol {
 impl Symbol {
     /// Both, for the legend.
     pub(super) fn sample(self) -> Sample {
-        Sample::Marker(Some(self.stroke), self.marker)
+        Sample::Marker(self.stroke, self.marker)
     }
 }
 

@@ -109,9 +109,10 @@ fn panels_of_the_gallery_show_what_they_should() {
 #[test]
 fn the_png_has_the_panels_size() {
     let (_, scenario) = crate::support::gallery().remove(2);
-    let png = drawn(&scenario).png().unwrap();
+    let figure = drawn(&scenario);
+    let png = figure.png().unwrap();
     let mut reader = png::Decoder::new(std::io::Cursor::new(&png)).read_info().unwrap();
-    assert_eq!((reader.info().width, reader.info().height), (panel::WIDTH, panel::HEIGHT));
+    assert_eq!((reader.info().width, reader.info().height), figure.size_px());
     assert!(png.len() < 300_000, "{} bytes", png.len());
     // Neither blank nor without text: the title's corner has ink in it.
     let mut indices = vec![0; reader.output_buffer_size().unwrap()];
@@ -232,7 +233,7 @@ fn damage_is_at_the_end_from_which_the_load_moves_away() {
                 && states.iter().all(|state| state.face_centre_m <= 0.0)
         );
         let figure = panel::draw(&simulation).unwrap();
-        let face_middle = figure.labels().iter().filter(|label| label.text == "Face width, z (mm)");
+        let face_middle = figure.labels().into_iter().filter(|label| label.text == "Face width, z (mm)");
         let face_middle = face_middle.map(|label| (label.left + label.right) / 2.0).fold(0.0, f64::max);
         let document = roxmltree::Document::parse(figure.svg()).unwrap();
         let edges = document.descendants().filter(|node| {
@@ -497,7 +498,7 @@ fn of_several_damaged_teeth_the_one_that_is_drawn_is_named_and_so_are_the_others
 fn the_edge_of_a_pit_does_not_cross_the_name_of_the_contact_start() {
     let mut scenario = of_example(None);
     let names = |figure: &Figure| {
-        let names = figure.labels().iter().filter(|label| label.text == "start of active profile");
+        let names = figure.labels().into_iter().filter(|label| label.text == "start of active profile");
         names.map(|label| label.top).collect::<Vec<_>>()
     };
     let healthy = names(&drawn(&scenario));
@@ -571,8 +572,8 @@ fn the_order_spectrum_has_its_mesh_orders_and_the_sensor_as_the_user_wrote_it() 
     let lines: Vec<f64> = lines.into_iter().map(|[left, _]| left).collect();
     let [first, second, third, fourth] = lines[..] else { panic!("{lines:?}") };
     assert!([third - second, fourth - third].iter().all(|step| (step - (second - first)).abs() < 0.1));
-    let names = figure.labels().iter().filter(|label| label.text == "17");
-    assert!(names.into_iter().any(|label| (label.left - first - 4.0).abs() < 1.0), "{first}");
+    let mut names = figure.labels().into_iter().filter(|label| label.text == "17");
+    assert!(names.any(|label| (label.left - first - 4.0).abs() < 1.0), "{first}");
     let mut sensor = Sensor::default();
     sensor.name = Some("Case_DE".to_owned());
     scenario.sensors = vec![sensor];

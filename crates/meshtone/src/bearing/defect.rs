@@ -1,13 +1,15 @@
 //! Spalls of a rolling bearing: what the scenario says of them, and by how much an element drops into one.
 
 use meshtone_toml::{ReadResult, TomlTable};
+use serde::Serialize;
 
 use super::BearingGeometry;
 use crate::error::ScenarioError;
 use crate::keys::{Keys, NoFiles, Range, by_name, keys, read_keys};
 
 /// Part of a bearing that has a defect.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[serde(rename_all = "lowercase")]
 pub enum DefectPlace {
     /// The race of the outer ring, which stands still.
     #[default]
@@ -90,10 +92,11 @@ keys! {
 }
 
 /// A spall with its sizes.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct Spall {
     /// Part of the bearing that has it.
+    #[serde(rename = "race")]
     pub place: DefectPlace,
     /// (mm) Width along the path of the elements, or around an element.
     pub width_mm: f64,

@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use serde::Serialize;
+
 use super::DefectPlace;
 
 /// Fewest and most rolling elements.
@@ -21,16 +23,20 @@ pub struct BearingGeometry {
 }
 
 /// Orders at which the defects of a bearing show, in orders of the shaft in its inner ring. The outer ring stands still.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct DefectOrders {
     /// Fundamental train frequency (FTF): the cage turns.
+    #[serde(rename = "ftf")]
     pub cage: f64,
     /// Ball pass frequency of the outer race (BPFO): the elements pass a place of the outer race.
+    #[serde(rename = "bpfo")]
     pub outer_race: f64,
     /// Ball pass frequency of the inner race (BPFI): the elements pass a place of the inner race.
+    #[serde(rename = "bpfi")]
     pub inner_race: f64,
     /// Ball spin frequency (BSF): an element turns about itself. A place on it meets a race twice a turn, so that its line is at 2 BSF.
+    #[serde(rename = "bsf")]
     pub element_spin: f64,
 }
 

@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 
 use meshtone_fourier::{Complex64, hann_window, real_spectrum};
+use serde::Serialize;
 
 use super::spectrum::windowed;
 use super::{AngularSignal, GearTrain, upper_median};
@@ -45,7 +46,7 @@ const SIDEBANDS: i32 = 4;
 const LEAST: f64 = 1e-6;
 
 /// A tone that belongs to no shaft and no mesh.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct ForeignTone {
     /// (Hz) At the mean speed of the recording.
@@ -55,8 +56,10 @@ pub struct ForeignTone {
     /// (unit of the signal) Its amplitude.
     pub amplitude: f64,
     /// (-) Its part of the recording's energy.
+    #[serde(rename = "part_of_energy")]
     pub part: f64,
     /// Whether it is a harmonic of a mains frequency.
+    #[serde(skip)]
     pub may_be_mains: bool,
 }
 

@@ -13,11 +13,12 @@ use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{self, Read, Seek};
 
-use self::source::{Source, Variable, invalid, padding};
+use self::source::{Source, Variable, padding};
 use self::walk::{ArrayLocation, MATRIX, Walk};
 use super::array::read_channels;
 use super::catalogue::{ArrayEntry, USUAL_COMPRESSION, read_arrays};
 use super::error::Problem;
+use super::fields::invalid;
 use super::{Recording, RecordingOptions};
 
 const HEADER_BYTES: u64 = 128;

@@ -6,6 +6,7 @@ use std::io::{self, BufReader, Read, Seek, SeekFrom, Take};
 use flate2::bufread::ZlibDecoder;
 
 use crate::recording::array::skip;
+use crate::recording::fields::invalid;
 
 /// Bytes that are read from the file at once.
 const BUFFER_BYTES: usize = 1 << 16;
@@ -148,8 +149,4 @@ impl Read for Source<'_> {
 /// Bytes that fill up data to a multiple of 8.
 pub(super) fn padding(bytes: u64) -> u64 {
     bytes.next_multiple_of(8) - bytes
-}
-
-pub(super) fn invalid(problem: impl Into<String>) -> io::Error {
-    io::Error::new(io::ErrorKind::InvalidData, problem.into())
 }

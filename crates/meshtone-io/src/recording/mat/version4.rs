@@ -17,9 +17,9 @@ const LONGEST_NAME: u32 = 1024;
 const KINDS: [NumberKind; 6] =
     [NumberKind::F64, NumberKind::F32, NumberKind::I32, NumberKind::I16, NumberKind::U16, NumberKind::U8];
 
-/// How the numbers of a variable stand in a file that may be of version 4, by its type: whether the highest byte is the first, their kind, and
-/// what it holds in place of a matrix.
-fn form(head: &[u8]) -> Option<(bool, NumberKind, Option<&'static str>)> {
+/// The head of a variable in a file that may be of version 4: how its numbers stand, what it holds in place of a matrix, and its rows, columns,
+/// imaginary parts and bytes of the name.
+fn variable(head: &[u8]) -> Option<(Numbers, Option<&'static str>, [u32; 4])> {
     let kind: [u8; 4] = head.get(..4)?.try_into().ok()?;
     let (little, big) = (u32::from_le_bytes(kind), u32::from_be_bytes(kind));
     let (big_endian, kind) = if little < 1000 { (false, little) } else { (true, big.checked_sub(1000)?) };
@@ -29,20 +29,17 @@ fn form(head: &[u8]) -> Option<(bool, NumberKind, Option<&'static str>)> {
         2 => Some("a sparse array"),
         _ => return None,
     };
-    (kind < 100).then_some(())?;
-    Some((big_endian, *KINDS.get((kind / 10) as usize)?, what))
+    let numbers = Numbers::plain(*KINDS.get((kind / 10) as usize)?, big_endian);
+    let mut fields = Fields { left: &head[4..], big_endian };
+    let mut next = || fields.u32().ok();
+    let [rows, columns, imaginary, name_bytes] = [next()?, next()?, next()?, next()?];
+    let is_possible = imaginary <= 1 && (1..=LONGEST_NAME).contains(&name_bytes);
+    is_possible.then_some((numbers, what, [rows, columns, imaginary, name_bytes]))
 }
 
 /// Whether a file begins as those of version 4 do.
 pub(super) fn is_version4(head: &[u8]) -> bool {
-    let small = |at: usize, big_endian: bool| {
-        let bytes: Option<[u8; 4]> = head.get(at..at + 4).and_then(|bytes| bytes.try_into().ok());
-        bytes.map(|bytes| if big_endian { u32::from_be_bytes(bytes) } else { u32::from_le_bytes(bytes) })
-    };
-    form(head).is_some_and(|(big_endian, ..)| {
-        small(12, big_endian).is_some_and(|imaginary| imaginary <= 1)
-            && small(16, big_endian).is_some_and(|name| (1..=LONGEST_NAME).contains(&name))
-    })
+    variable(head).is_some()
 }
 
 /// Reads a recording from a file of version 4.
@@ -53,12 +50,9 @@ pub(super) fn read(mut file: &File, options: &RecordingOptions) -> Result<Record
     while at < file_bytes {
         let head = block(file, at, HEAD_BYTES)?;
         let broken = || Problem::Broken(format!("the variable at byte {at} is none; is the file cut off?"));
-        let (big_endian, kind, what) = form(&head).ok_or_else(broken)?;
-        let mut fields = Fields { left: &head[4..], big_endian };
-        let (rows, columns, imaginary, length) = (fields.u32()?, fields.u32()?, fields.u32()?, fields.u32()?);
-        if imaginary > 1 || !(1..=LONGEST_NAME).contains(&length) || entries.len() >= MAX_ARRAYS {
-            return Err(broken());
-        }
+        let (numbers, what, [rows, columns, imaginary, length]) =
+            variable(&head).filter(|_| entries.len() < MAX_ARRAYS).ok_or_else(broken)?;
+        let kind = numbers.kind;
         let name = block(file, at + HEAD_BYTES, length.into())?;
         let name =
             String::from_utf8_lossy(name.split(|byte| *byte == 0).next().unwrap_or_default()).into_owned();
@@ -66,7 +60,6 @@ pub(super) fn read(mut file: &File, options: &RecordingOptions) -> Result<Record
         let bytes = u64::from(rows) * u64::from(columns);
         let bytes = bytes.checked_mul(kind.size() as u64 * (1 + u64::from(imaginary))).ok_or_else(broken)?;
         at = start.checked_add(bytes).filter(|end| *end <= file_bytes).ok_or_else(broken)?;
-        let numbers = Numbers::plain(kind, big_endian);
         let single = if rows == 1 && columns == 1 && what.is_none() {
             Some(numbers.read_one(&mut &block(file, start, kind.size() as u64)?[..])?)
         } else {

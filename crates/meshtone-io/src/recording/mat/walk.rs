@@ -3,8 +3,9 @@
 use std::io;
 
 use super::super::catalogue::{ArrayEntry, MAX_ARRAYS, MAX_DEPTH};
+use super::super::fields::invalid;
 use super::super::number::{NumberKind, Numbers};
-use super::source::{Source, Variable, invalid, padding};
+use super::source::{Source, Variable, padding};
 
 /// The type of an element that is an array.
 pub(super) const MATRIX: u32 = 14;

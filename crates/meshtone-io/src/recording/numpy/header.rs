@@ -4,6 +4,7 @@ use std::io::{self, Read};
 
 use serde_json::Value;
 
+use crate::recording::fields::invalid;
 use crate::recording::number::{NumberKind, Numbers};
 
 /// Longest header that is read; NumPy itself warns beyond 10 000 bytes.
@@ -87,10 +88,6 @@ impl Field {
         let type_name = numbers.as_ref().map_or(code, |numbers| numbers.kind.name()).to_string();
         Self { name: name.to_string(), type_name, numbers }
     }
-}
-
-fn invalid(problem: &str) -> io::Error {
-    io::Error::new(io::ErrorKind::InvalidData, problem)
 }
 
 /// The JSON of a Python literal, as far as NumPy writes it: its text, whole numbers, truth values, tuples and lists become strings,

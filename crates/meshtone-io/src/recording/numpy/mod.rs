@@ -9,16 +9,13 @@ use std::fs::File;
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
 
 use zip::ZipArchive;
-use zip::result::ZipError;
 
 use self::header::{Field, NpyHeader};
 use super::array::{ArrayLayout, read_channels, shape_text};
-use super::catalogue::{ArrayEntry, MAX_ARRAYS, read_arrays};
+use super::catalogue::{ArrayEntry, MAX_ARRAYS, USUAL_COMPRESSION, read_arrays};
 use super::error::Problem;
 use super::{Recording, RecordingOptions};
 
-/// Bytes that a byte of a compressed file may well stand for; memory for more is taken only as they come.
-const USUAL_COMPRESSION: u64 = 16;
 /// Longest record that is read: an element of each channel.
 const MAX_RECORD_BYTES: u64 = 1 << 20;
 
@@ -38,7 +35,7 @@ pub(super) fn read_npy(file: File, options: &RecordingOptions) -> Result<Recordi
 /// Reads an archive; its arrays' names are its columns'.
 pub(super) fn read_npz(file: File, options: &RecordingOptions) -> Result<Recording, Problem> {
     let file_bytes = file.metadata()?.len();
-    let mut archive = ZipArchive::new(BufReader::new(file)).map_err(zip_failed)?;
+    let mut archive = ZipArchive::new(BufReader::new(file))?;
     let arrays = arrays(&mut archive)?;
     let (mut all, mut array_of) = (Vec::new(), Vec::new());
     for (index, array) in arrays.iter().enumerate() {
@@ -47,7 +44,7 @@ pub(super) fn read_npz(file: File, options: &RecordingOptions) -> Result<Recordi
     }
     read_arrays(&all, options, true, |index, layout, numbers, wanted| {
         let array = &arrays[array_of[index]];
-        let mut from = archive.by_index(array.file).map_err(zip_failed)?;
+        let mut from = archive.by_index(array.file)?;
         check_size(&array.header, from.size())?;
         let present =
             from.compressed_size().min(file_bytes).saturating_mul(USUAL_COMPRESSION).min(from.size());
@@ -78,8 +75,8 @@ fn arrays(archive: &mut ZipArchive<BufReader<File>>) -> Result<Vec<NpzArray>, Pr
     }
     let mut arrays = Vec::new();
     for index in 0..archive.len() {
-        let mut file = archive.by_index(index).map_err(zip_failed)?;
-        let name = file.name().map_err(zip_failed)?;
+        let mut file = archive.by_index(index)?;
+        let name = file.name()?;
         let Some(name) = name.strip_suffix(".npy").map(str::to_string) else { continue };
         let header = NpyHeader::read(&mut file).map_err(|error| in_array(&name, error))?;
         let single = single(&header, &mut file).map_err(|error| in_array(&name, error))?;
@@ -154,13 +151,4 @@ fn in_array(name: &str, error: io::Error) -> Problem {
         _ => error.to_string(),
     };
     Problem::Broken(format!("array {name}: {problem}"))
-}
-
-/// The problem of an archive that cannot be read.
-pub(super) fn zip_failed(error: ZipError) -> Problem {
-    match error {
-        ZipError::Io(error) => Problem::Io(error),
-        // Its table of contents stands at the end.
-        other => Problem::Broken(format!("{other}; is the file cut off?")),
-    }
 }

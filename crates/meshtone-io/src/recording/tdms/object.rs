@@ -1,10 +1,10 @@
 //! Objects of a TDMS file, by their paths: channels, groups and the file itself, with their properties.
 
 use std::collections::HashMap;
-use std::io::{self, ErrorKind};
+use std::io;
 
 use crate::recording::error::Problem;
-use crate::recording::fields::Fields;
+use crate::recording::fields::{Fields, invalid};
 use crate::recording::label::Label;
 use crate::recording::number::{NumberKind, Numbers};
 use crate::recording::rate::StatedRate;
@@ -208,12 +208,7 @@ pub(super) fn kind(code: u32) -> io::Result<Kind> {
         10 | 0x1a => NumberKind::F64,
         0x44 | 0x10_000d => return Ok(Kind { numbers: None, bytes: 16 }),
         0x08_000c => return Ok(Kind { numbers: None, bytes: 8 }),
-        other => {
-            return Err(io::Error::new(
-                ErrorKind::InvalidData,
-                format!("a type of numbers, {other}, that is not known"),
-            ));
-        }
+        other => return Err(invalid(format!("a type of numbers, {other}, that is not known"))),
     };
     Ok(Kind { numbers: Some(numbers), bytes: numbers.size() as u64 })
 }

@@ -2,6 +2,8 @@
 
 use std::io::{self, Read};
 
+use crate::recording::fields::invalid;
+
 /// Bytes of a block.
 const BLOCK_BYTES: usize = 1 << 20;
 /// Longest line; a file with a longer one is no table.
@@ -38,8 +40,7 @@ impl<R: Read> Blocks<R> {
                 break;
             }
             if self.block_bytes >= MAX_LINE_BYTES {
-                let problem = "it has a line of more than 16 MiB";
-                return Err(io::Error::new(io::ErrorKind::InvalidData, problem));
+                return Err(invalid("it has a line of more than 16 MiB"));
             }
             self.block_bytes *= 2;
         }

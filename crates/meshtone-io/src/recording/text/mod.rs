@@ -63,17 +63,14 @@ pub(super) fn read(mut file: File, options: &RecordingOptions) -> Result<Recordi
     }
     let reads_last = selection.wanted.last().is_some_and(|column| column + 1 == head.labels.len());
     let doubtful = if reads_last { doubtful_end(&mut file, &head, last_line)? } else { None };
-    let own_time = match selection.own_time {
-        Some((time, unit_s)) => {
-            // The first block tells the rate. It is compared only: where it cannot be read, the stated rate counts all the same.
-            file.seek(SeekFrom::Start(head.data_offset))?;
-            let mut numbers = Numbers::new(&head, &[time], 0);
-            let times =
-                numbers.read(Blocks::new(&file).next()?).and_then(|()| numbers.finish()).unwrap_or_default();
-            rate::other_than_timed(&head.labels[time], times.first(), unit_s, options)
-        }
-        None => None,
+    // The first block tells the rate.
+    let own_times = |column: usize| {
+        file.seek(SeekFrom::Start(head.data_offset))?;
+        let mut numbers = Numbers::new(&head, &[column], 0);
+        numbers.read(Blocks::new(&file).next()?)?;
+        Ok(numbers.finish()?.concat())
     };
+    let own_time = rate::other_than_timed(&head.labels, &selection, options, own_times);
     recording.warnings.extend(doubtful.into_iter().chain(own_time));
     Ok(recording)
 }

@@ -4,10 +4,6 @@ use super::{LineKind, REST, amplitude_axis, last_order};
 use crate::drawing::{Area, Axes, Canvas, Entry, Sample, Stroke, Ticks, colour};
 use crate::record::WheelView;
 
-const MESH: Stroke = Stroke::solid(colour::BLUE, 2.2);
-const SIDEBAND: Stroke = Stroke::solid(colour::PURPLE, 1.8);
-const OTHER: Stroke = Stroke::solid(colour::ORANGE, 2.0);
-const SHAFT: Stroke = Stroke::solid(colour::GREEN, 1.8);
 /// (px) Least distance of two orders.
 const BETWEEN_ORDERS: f64 = 3.2;
 /// Fewest mesh orders that are shown.
@@ -53,10 +49,10 @@ pub(super) fn draw(canvas: &mut Canvas, area: Area, y: [f64; 2], wheel: &WheelVi
 
 fn stroke(kind: LineKind) -> Stroke {
     match kind {
-        LineKind::Mesh => MESH,
-        LineKind::Sideband => SIDEBAND,
-        LineKind::Other => OTHER,
-        LineKind::Shaft => SHAFT,
+        LineKind::Mesh => Stroke::solid(colour::BLUE, 2.2),
+        LineKind::Sideband => Stroke::solid(colour::PURPLE, 1.8),
+        LineKind::Other => Stroke::solid(colour::ORANGE, 2.0),
+        LineKind::Shaft => Stroke::solid(colour::GREEN, 1.8),
         LineKind::Difference => REST,
     }
 }
