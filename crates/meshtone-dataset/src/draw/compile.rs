@@ -103,7 +103,7 @@ impl<'a> Sampler<'a> {
 /// Checks the rules that concern a class, and puts those for its records in order.
 fn class_rules(content: &Content, class: usize) -> ReadResult<ClassRules<'_>> {
     let base = FaultyBase::new(&content.base, &content.classes[class].faults);
-    let known = base.numbers();
+    let known = base.numbers(content);
     let mut own = content.class_rules(class);
     if let Some((rule, place)) = own.find(|(rule, _)| rule.level != Level::Record) {
         let problem = format!("varies by {}; a rule of a class varies by record", rule.level.name());
@@ -246,7 +246,7 @@ fn check_top(content: &Content, classes: &[ClassRules]) -> ReadResult<()> {
         let is_nowhere = |key: &&String| !classes.iter().any(|class| has(class, key));
         let key = rule_keys.iter().find(is_nowhere).unwrap_or(&rule_keys[0]);
         let mut known = content.base.numbers();
-        known.extend(classes.iter().flat_map(|class| class.base.numbers()));
+        known.extend(classes.iter().flat_map(|class| class.base.numbers(content)));
         return Err(unknown(&placed, key, &known, content, None));
     }
     Ok(())

@@ -5,6 +5,7 @@ use meshtone::scenario::{
 };
 use meshtone_toml::{ReadResult, TomlTable};
 
+use super::Content;
 use crate::draw::is_of_plan;
 
 /// A fault of a class, before its varied keys are drawn.
@@ -139,8 +140,12 @@ impl FaultyBase {
     }
 
     /// All numbers of the scenario, by the plan's keys.
-    pub fn numbers(&self) -> Vec<ScenarioNumber> {
-        let mut numbers = self.numbered.scenario().numbers();
+    ///
+    /// # Arguments
+    /// * `content` - the plan
+    pub fn numbers(&self, content: &Content) -> Vec<ScenarioNumber> {
+        let varied = content.all_rules().flat_map(|rule| rule.keys.iter().map(String::as_str));
+        let mut numbers = self.numbered.scenario().numbers_with(varied);
         for number in &mut numbers {
             number.key = renamed(&number.key, self.sections.iter().map(|[plan, scenario]| [scenario, plan]));
         }

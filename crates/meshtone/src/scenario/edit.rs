@@ -72,15 +72,6 @@ pub fn names_or_numbers(names: &[Option<String>]) -> Vec<String> {
     names.iter().enumerate().map(shown).collect()
 }
 
-/// All numbers of a scenario file, by their keys.
-fn numbers_of(table: Result<Table, ScenarioError>) -> Vec<ScenarioNumber> {
-    let mut numbers = Vec::new();
-    if let Ok(table) = table {
-        collect(&table, "", &mut numbers);
-    }
-    numbers
-}
-
 /// The number at a key of a scenario file.
 fn number_at(table: Result<Table, ScenarioError>, key: &str) -> Option<f64> {
     match at_mut(&mut table.ok()?, key)? {
@@ -301,7 +292,30 @@ impl Scenario {
     /// assert!(teeth.whole && teeth.value == 17.0);
     /// ```
     pub fn numbers(&self) -> Vec<ScenarioNumber> {
-        numbers_of(self.table())
+        self.numbers_with([])
+    }
+
+    /// Those of [`Self::numbers`], and those at keys of the pinion or the gear alone where both are alike, and have one key.
+    ///
+    /// # Arguments
+    /// * `keys` - dotted, some of them such keys
+    ///
+    /// ```
+    /// use meshtone::scenario::{GearPair, Scenario};
+    ///
+    /// let scenario = Scenario::new(GearPair::example());
+    /// let key = "gears.gear_flank_relief.amount_um";
+    /// assert!(scenario.numbers_with([key]).iter().any(|number| number.key == key));
+    /// assert!(scenario.numbers().iter().all(|number| number.key != key));
+    /// ```
+    pub fn numbers_with<'k>(&self, keys: impl IntoIterator<Item = &'k str>) -> Vec<ScenarioNumber> {
+        let mut table = self.table().unwrap_or_default();
+        for key in keys {
+            at_mut(&mut table, key);
+        }
+        let mut numbers = Vec::new();
+        collect(&table, "", &mut numbers);
+        numbers
     }
 
     /// The scenario file as a table, without the profile errors given, which are large.
@@ -340,10 +354,17 @@ pub fn split_key(key: &str) -> (&str, Option<&str>) {
     }
 }
 
-/// The value at a dotted key, if there is one.
+/// The value at a dotted key, if there is one; of a key of one wheel of a pair beside that of both, which alone is written of wheels that
+/// are alike.
 fn at_mut<'a>(table: &'a mut Table, key: &str) -> Option<&'a mut Value> {
     let (segment, rest) = split_key(key);
     let (name, entry) = segment.find('[').map_or((segment, ""), |from| segment.split_at(from));
+    let of_each = name.strip_prefix("pinion_").or_else(|| name.strip_prefix("gear_"));
+    if let Some(both @ ("flank_relief" | "tip_chamfer_mm")) = of_each
+        && let Some(value) = table.get(both).cloned()
+    {
+        table.entry(name).or_insert(value);
+    }
     let mut value = table.get_mut(name)?;
     if value.is_array() && (rest.is_some() || !entry.is_empty()) {
         let entries = value.as_array_mut()?;
