@@ -34,7 +34,7 @@ class EndRelief(TypedDict, total=False):
 
 
 class FlankRelief(TypedDict, total=False):
-    """The table ``flank_relief`` of a scenario.
+    """One of the tables ``flank_relief``, ``pinion_flank_relief``, ``gear_flank_relief`` of a scenario.
 
     Attributes
     ----------
@@ -256,14 +256,14 @@ class GearboxWheel(TypedDict, total=False):
         (-) The dedendum coefficient of the basic rack, in modules. Allowed: 0.5…2.5; roots clear of the mating gear's
         tips.
     tip_chamfer_mm : float
-        (mm) The height of the chamfer or rounding of all tips. Allowed: ≥ 0; the same of both wheels of a mesh.
+        (mm) The height of the chamfer or rounding of all tips. Allowed: ≥ 0; less than 1 module.
     active_profile_shortening : float
         (-) The shortening of the path of contact against that between the chamfers, in base pitches, half at either
-        end. Allowed: 0…0.5; the same of both wheels of a mesh.
+        end. Allowed: 0…0.5.
     uniform_flank_reduction_mm : float
-        (mm) A constant reduction of the working flank. Allowed: ≥ 0; the same of both wheels of a mesh.
+        (mm) A constant reduction of the working flank. Allowed: ≥ 0; less than π/4 modules, half the tooth's thickness.
     flank_relief : FlankRelief
-        The relief of the flanks near the tips, as a gap in µm. Allowed: the same of both wheels of a mesh.
+        The relief of the flanks near the tips, as a gap in µm.
     material : {'steel', 'copper', 'aluminium', 'brass', 'cast-iron', 'bronze'} or dict
         Its material.
     inertia : WheelInertia
@@ -1022,7 +1022,11 @@ SECTION_OF_KEY: dict[str, str] = {
     "pinion_material": "gears",
     "gear_material": "gears",
     "flank_relief": "gears",
+    "pinion_flank_relief": "gears",
+    "gear_flank_relief": "gears",
     "tip_chamfer_mm": "gears",
+    "pinion_tip_chamfer_mm": "gears",
+    "gear_tip_chamfer_mm": "gears",
     "active_profile_shortening": "gears",
     "backlash_mm": "gears",
     "uniform_flank_reduction_mm": "gears",
@@ -1124,7 +1128,11 @@ class ScenarioChanges(TypedDict, total=False):
     pinion_material: Any
     gear_material: Any
     flank_relief: Any
+    pinion_flank_relief: Any
+    gear_flank_relief: Any
     tip_chamfer_mm: Any
+    pinion_tip_chamfer_mm: Any
+    gear_tip_chamfer_mm: Any
     active_profile_shortening: Any
     backlash_mm: Any
     uniform_flank_reduction_mm: Any
@@ -1205,8 +1213,12 @@ class ScenarioKeys:
     material: Literal["steel", "copper", "aluminium", "brass", "cast-iron", "bronze"] | Mapping[str, float]
     pinion_material: Literal["steel", "copper", "aluminium", "brass", "cast-iron", "bronze"] | Mapping[str, float] | None
     gear_material: Literal["steel", "copper", "aluminium", "brass", "cast-iron", "bronze"] | Mapping[str, float] | None
-    flank_relief: FlankRelief
+    flank_relief: FlankRelief | None
+    pinion_flank_relief: FlankRelief | None
+    gear_flank_relief: FlankRelief | None
     tip_chamfer_mm: float | None
+    pinion_tip_chamfer_mm: float | None
+    gear_tip_chamfer_mm: float | None
     active_profile_shortening: float
     backlash_mm: float | None
     uniform_flank_reduction_mm: float
@@ -1286,7 +1298,11 @@ class ScenarioKeys:
         pinion_material: Literal["steel", "copper", "aluminium", "brass", "cast-iron", "bronze"] | Mapping[str, float] | None = None,
         gear_material: Literal["steel", "copper", "aluminium", "brass", "cast-iron", "bronze"] | Mapping[str, float] | None = None,
         flank_relief: FlankRelief | None = None,
+        pinion_flank_relief: FlankRelief | None = None,
+        gear_flank_relief: FlankRelief | None = None,
         tip_chamfer_mm: float | None = None,
+        pinion_tip_chamfer_mm: float | None = None,
+        gear_tip_chamfer_mm: float | None = None,
         active_profile_shortening: float | None = None,
         backlash_mm: float | None = None,
         uniform_flank_reduction_mm: float | None = None,
@@ -1399,9 +1415,14 @@ class ScenarioKeys:
         flank_relief : FlankRelief, optional
             The relief of the flanks near the tips, as a gap in µm. Default: { shape = "parabolic", length_mm = 1.0,
             amount_um = 0.0 }. Ignored by published.
+        pinion_flank_relief, gear_flank_relief : FlankRelief, optional
+            The value of this wheel alone. Default: that of both wheels. Ignored by published.
         tip_chamfer_mm : float, optional
             (mm) The height of the chamfer or rounding of all tips. Allowed: ≥ 0; less than 1 module. Default: 0.23
             modules. Ignored by published.
+        pinion_tip_chamfer_mm, gear_tip_chamfer_mm : float, optional
+            (mm) The value of this wheel alone. Allowed: ≥ 0; less than 1 module. Default: that of both wheels. Ignored
+            by published.
         active_profile_shortening : float, optional
             (-) The shortening of the path of contact against that between the chamfers, in base pitches, half at either
             end. Allowed: 0…0.5. Default: 0.1. Ignored by linear, published.

@@ -174,6 +174,10 @@ pinion_speed_hz=40.0, din_grade=7)
         arguments = dict(self._flat)
         if "fault" in changes:
             del arguments["faults"]
+        for key in {"flank_relief", "tip_chamfer_mm"} & changes.keys():
+            # That of both wheels takes the place of their own.
+            arguments.pop(f"pinion_{key}", None)
+            arguments.pop(f"gear_{key}", None)
         errors = self._native.profile_errors_mm()
         if errors is not None:
             arguments["pinion_profile_errors_mm"], arguments["gear_profile_errors_mm"] = errors

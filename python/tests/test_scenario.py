@@ -25,6 +25,17 @@ def test_round_trips(fault: meshtone.Fault | None) -> None:
     assert eval(repr(scenario), vars(meshtone)) == scenario
 
 
+def test_tips_of_each_wheel() -> None:
+    both = Scenario(**PAIR, flank_relief={"amount_um": 10.0}, tip_chamfer_mm=0.5)
+    scenario = both.copy(gear_flank_relief={"amount_um": 20.0})
+    assert scenario == Scenario(**PAIR, pinion_flank_relief={"amount_um": 10.0}, gear_flank_relief={"amount_um": 20.0}, tip_chamfer_mm=0.5)
+    assert scenario.flank_relief is None and scenario.tip_chamfer_mm == 0.5
+    assert scenario.pinion_flank_relief is not None and scenario.pinion_flank_relief["amount_um"] == 10.0
+    for same in (Scenario.from_toml(scenario.to_toml()), pickle.loads(pickle.dumps(scenario)), scenario.copy(), eval(repr(scenario), vars(meshtone))):
+        assert same == scenario
+    assert scenario.copy(flank_relief={"amount_um": 10.0}) == both
+
+
 def test_lists_of_faults() -> None:
     chip = meshtone.ToothBreakage(chip_height_mm=3.0, chip_width_mm=4.0, tip_loss_mm=0.0, wheel="pinion", tooth=3)
     missing = meshtone.MissingTooth(tooth=6)

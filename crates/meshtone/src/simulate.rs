@@ -429,12 +429,15 @@ impl Stages {
         self.pairs.iter().map(|pair| [of_wheel(pair, 0), of_wheel(pair, 1)]).collect()
     }
 
-    /// (mm) How far the tips' chamfers and their relief reach inwards from the tip, of the wheels of the first mesh; 0 where there is none.
-    pub fn tip_lengths_mm(&self) -> [f64; 2] {
+    /// (mm) How far the chamfers of a wheel's tips and their relief reach inwards from the tip, in the first mesh; 0 where there is none.
+    ///
+    /// # Arguments
+    /// * `wheel` - which of the two
+    pub fn tip_lengths_mm(&self, wheel: WheelName) -> [f64; 2] {
         if !self.scenario.model.has_meshes() {
             return [0.0, TipRelief::PUBLISHED.length_mm];
         }
-        self.layout.gears[0].tip_lengths_mm()
+        self.layout.gears[0].tip_lengths_mm(wheel)
     }
 
     /// (N) Force along the line of action of the first mesh that balances the brake's nominal torque.

@@ -67,6 +67,27 @@ fn a_unit_is_in_one_split_with_the_same_wheels() {
     }
 }
 
+/// Where the base states those of each wheel, and they differ.
+#[test]
+fn the_tips_of_either_wheel_vary() {
+    let more = "[[vary]]\nkey = \"gears.gear_flank_relief.amount_um\"\nper = \"unit\"\nuniform = [10.0, 20.0]\n\
+                [[vary]]\nkey = \"gears.pinion_tip_chamfer_mm\"\nuniform = [0.1, 0.4]";
+    let plan = plan(
+        &FAST
+            .replace("points_per_tooth = 1000", "points_per_tooth = 1000\npinion_tip_chamfer_mm = 0.3\ngear_tip_chamfer_mm = 0.5\ngear_flank_relief = { amount_um = 15.0, length_mm = 1.0 }")
+            .replace("[keep]", &format!("{more}\n[keep]")),
+    );
+    let sampler = Sampler::new(&plan.content).unwrap();
+    for record in all(&plan) {
+        let [pinion, gear] = &pair_of(&sampler, &record).wheels[..] else { panic!() };
+        let [amount_um, chamfer_mm] = ["gears.gear_flank_relief.amount_um", "gears.pinion_tip_chamfer_mm"]
+            .map(|key| value(&record, key).unwrap());
+        assert!((10.0..=20.0).contains(&amount_um) && (0.1..=0.4).contains(&chamfer_mm));
+        assert_eq!((pinion.flank_relief.amount_um, gear.flank_relief.amount_um), (0.0, amount_um));
+        assert_eq!((pinion.tip_chamfer_mm, gear.tip_chamfer_mm), (Some(chamfer_mm), Some(0.5)));
+    }
+}
+
 #[test]
 fn what_is_held_out_is_nowhere_else() {
     let text = "[[split.shift]]\nname = \"severe\"\npart = 0.1\nwhen = \"severity == 3\"\n\

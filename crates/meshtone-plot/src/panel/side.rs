@@ -42,7 +42,7 @@ impl<'a> Side<'a> {
         };
         let heading = [title.to_owned(), shaft.to_owned()];
         let overlap = stages.meshes.first().map_or(0.0, |mesh| mesh.face.overlap());
-        Self::of_pair(name, heading, of_tooth, (&stages.pairs[0], overlap), stages.tip_lengths_mm())
+        Self::of_pair(name, heading, of_tooth, (&stages.pairs[0], overlap), stages.tip_lengths_mm(name))
     }
 
     /// A wheel of a gearbox, in its first mesh; none of a wheel in no mesh.
@@ -54,7 +54,7 @@ impl<'a> Side<'a> {
         let (mesh, name) = stages.layout.mesh_of(wheel)?;
         let (of_mesh, of_file) = (&stages.pairs[mesh], &gearbox.wheels[wheel]);
         let heading = [of_file.name.clone(), format!("shaft {}", of_file.shaft)];
-        let tips_mm = stages.layout.gears[mesh].tip_lengths_mm();
+        let tips_mm = stages.layout.gears[mesh].tip_lengths_mm(name);
         Some(Self::of_pair(name, heading, "", (of_mesh, stages.meshes[mesh].face.overlap()), tips_mm))
     }
 

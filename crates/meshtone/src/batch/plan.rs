@@ -32,7 +32,7 @@ impl Cost {
                 || !scenario.shafts().is_empty()
                 || scenario.wheels.iter().any(|wheel| wheel.helix_wobble_um > 0.0),
             is_sliced: gears.is_crowned()
-                || gears.is_helical() && (gears.flank_relief.amount_um > 0.0 || !scenario.faults.is_empty()),
+                || gears.is_helical() && (gears.is_relieved() || !scenario.faults.is_empty()),
             has_corners: scenario.model.teeth_part() && is_slanted(gears.overlap_ratio()),
             has_more_modes: gears.is_helical() || unbalanced,
             varies: !scenario.operation.is_constant() || scenario.solver.initial_velocity.is_some(),

@@ -73,6 +73,11 @@ impl<S> KeyRow<S> {
         Self { head: KeyHead { absent: Absent::Words(words), ..self.head }, ..self }
     }
 
+    /// The key of another name that says the same of a part.
+    pub(crate) fn renamed(self, name: &'static str, meaning: &'static str) -> Self {
+        Self { head: KeyHead { name, meaning, ..self.head }, ..self }
+    }
+
     /// The numbers that are allowed whatever the other keys say.
     pub(crate) fn range(self, range: Range) -> Self {
         Self { head: KeyHead { range, ..self.head }, ..self }

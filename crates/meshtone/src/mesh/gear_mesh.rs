@@ -219,13 +219,13 @@ impl Mesh {
     ///
     /// # Arguments
     /// * `faces` - the tooth pairs of each slice
-    /// * `shape` - of all tips
+    /// * `shapes` - of the pinion's and of the gear's tips
     /// * `sequence` - which of them meet
     /// * `points_per_pitch` - number of points from one pair to the next
     /// * `parameters` - contact, damping, coast flanks, load along the face
     pub(crate) fn new(
         faces: &[Pairs],
-        shape: TipShape,
+        shapes: [TipShape; 2],
         sequence: PairSequence,
         points_per_pitch: NonZeroUsize,
         parameters: MeshParameters,
@@ -247,7 +247,7 @@ impl Mesh {
         let per_pitch = points_per_pitch as f64;
         let step = 1.0 / per_pitch;
         let tables: Vec<PairTables> =
-            faces.iter().map(|pairs| PairTables::new(pairs, shape, contact)).collect();
+            faces.iter().map(|pairs| PairTables::new(pairs, shapes, contact)).collect();
         let [begins, ends] = tables[0].path_of_sound_teeth();
         let reach = face.reach(contact, ends - begins, step);
         let points_before = ((reach - begins) * per_pitch).floor().max(0.0) as usize;

@@ -26,12 +26,12 @@ impl PairState {
     pub(super) const APART: Self = Self { stiffness_n_per_m: 0.0, separation_m: 0.0, face_centre_m: 0.0 };
 }
 
-/// What shapes the tips and flanks of all teeth.
+/// What shapes the tips and flanks of a wheel's teeth.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct TipShape {
     /// (mm) Height of the chamfer.
     pub(crate) chamfer_mm: f64,
-    /// (base pitches) By how much the path is shorter than that between the chamfers.
+    /// (base pitches) By how much the path is shorter than that between the chamfers, half of it at this wheel's tips.
     pub(crate) active_profile_shortening: f64,
     /// Relief of the flank near the tip.
     pub(crate) relief: FlankRelief,
@@ -56,7 +56,8 @@ struct Ends {
 /// Tabulates the pairs of a mesh.
 pub(crate) struct PairTables<'a> {
     pairs: &'a Pairs<'a>,
-    shape: TipShape,
+    /// Of the pinion and of the gear.
+    shapes: [TipShape; 2],
     contact: Contact,
     /// (-) Cosine of the base helix angle: of what is lost across the teeth in the transverse section.
     base_cos: f64,
@@ -70,22 +71,23 @@ impl<'a> PairTables<'a> {
     ///
     /// # Arguments
     /// * `pairs` - the tooth pairs
-    /// * `shape` - of all tips
+    /// * `shapes` - of the pinion's and of the gear's tips
     /// * `contact` - how the flanks touch: those that push leave their path with the corner of a tip, those that may pull at once
-    pub(crate) fn new(pairs: &'a Pairs<'a>, shape: TipShape, contact: Contact) -> Self {
-        Self { pairs, shape, contact, base_cos: pairs.teeth().pinion.base_helix_angle_rad().cos() }
+    pub(crate) fn new(pairs: &'a Pairs<'a>, shapes: [TipShape; 2], contact: Contact) -> Self {
+        Self { pairs, shapes, contact, base_cos: pairs.teeth().pinion.base_helix_angle_rad().cos() }
     }
 
     fn tooth(&self, wheel: WheelName, damage: Option<&DamagedTooth>) -> Tooth {
         let teeth = self.pairs.teeth();
         let (own, profile) = (teeth.wheel(wheel), teeth.profile(wheel));
-        let chamfered = own.tip_radius_mm - own.sign() * self.shape.chamfer_mm;
+        let shape = &self.shapes[wheel as usize];
+        let chamfered = own.tip_radius_mm - own.sign() * shape.chamfer_mm;
         let left = damage.map(|damage| damage.gone_from_index).filter(|&index| index < profile.len());
         let broken_mm = left.map_or(f64::INFINITY, |index| {
             let curvature_mm = teeth.flank(wheel).curvature_mm(index.saturating_sub(1));
             teeth.transverse_curvature_mm(wheel, curvature_mm)
         });
-        let shortening = self.shape.active_profile_shortening;
+        let shortening = shape.active_profile_shortening;
         let active = own.curvature_mm(chamfered) - shortening / 2.0 * teeth.path.base_pitch_mm;
         // What is left of a ring's tooth ends at its root, and another one's flank on the base circle.
         let least_mm = if own.is_internal { own.curvature_mm(own.root_radius_mm) } else { 0.0 };
@@ -235,7 +237,7 @@ impl<'a> PairTables<'a> {
         let (own, flank, path) = (teeth.wheel(wheel), teeth.flank(wheel), &teeth.path);
         let curvature: Vec<f64> =
             on_path.iter().map(|&position| path.curvature_mm(wheel, position)).collect();
-        let relief = |n: usize| self.shape.relief.gap_mm(own, curvature[n]);
+        let relief = |n: usize| self.shapes[wheel as usize].relief.gap_mm(own, curvature[n]);
         let Some(damage) = damage else {
             return (0..on_path.len()).map(|n| (relief(n), n)).collect();
         };

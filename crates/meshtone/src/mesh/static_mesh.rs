@@ -179,6 +179,49 @@ mod tests {
         assert!(at_rest.peak_to_peak_m() > 0.0);
     }
 
+    // The tip of the driven wheel touches first, that of the driving wheel last.
+    #[test]
+    fn relief_of_one_wheel_acts_at_one_end_of_the_path() {
+        let relief = FlankRelief { shape: ReliefShape::Parabolic, length_mm: 1.5, amount_um: 20.0 };
+        let relieved = |wheels: &[usize]| {
+            mesh(|scenario| {
+                scenario.wheels.iter_mut().for_each(|wheel| wheel.active_profile_shortening = 0.0);
+                wheels.iter().for_each(|&wheel| scenario.wheels[wheel].flank_relief = relief);
+            })
+        };
+        let [neither, driving, driven, both] = [&[][..], &[0], &[1], &[0, 1]].map(relieved);
+        let separation_um = |mesh: &Mesh, n: usize| {
+            let of = |mesh: &Mesh| mesh.classes[0].states[n].separation_m * 1e6;
+            of(mesh) - of(&neither)
+        };
+        let pitch = neither.points_per_pitch as f64;
+        let middle = neither.points_before + (neither.contact_ratio / 2.0 * pitch) as usize;
+        let last = neither.points_before + (neither.contact_ratio * pitch) as usize;
+        assert!((separation_um(&driven, neither.points_before) - 20.0).abs() < 1e-9);
+        assert!((separation_um(&driving, last) - 20.0).abs() < 1.0);
+        for n in 0..neither.classes[0].states.len() {
+            let [at_end, at_start] = [&driving, &driven].map(|mesh| separation_um(mesh, n));
+            let other = if n < middle { at_end } else { at_start };
+            assert_eq!(other, 0.0, "{n}");
+            assert!((at_end + at_start - separation_um(&both, n)).abs() < 1e-9);
+        }
+
+        // In the second half of its path a pair carries as one without relief until the next one would have entered; relief keeps that away.
+        let force = 200.0;
+        let carried = |mesh: &Mesh| -> Vec<f64> {
+            let at_rest = mesh.at_rest(force, 0..4);
+            let row = (1 - at_rest.first_pair) as usize;
+            let of_pair = at_rest.pair_force_n[row].iter();
+            of_pair.copied().collect()
+        };
+        let begins = |mesh: &Mesh| carried(mesh).iter().position(|force| *force > 1.0).unwrap();
+        let ends = |mesh: &Mesh| carried(mesh).iter().rposition(|force| *force > 1.0).unwrap();
+        println!("{:?}", [&neither, &driving, &driven, &both].map(|mesh| [begins(mesh), ends(mesh)]));
+        assert!(begins(&driven) > begins(&neither) + 5 && begins(&driven) == begins(&both));
+        assert!(ends(&driving) + 5 < ends(&neither) && ends(&driving) == ends(&both));
+        assert!(begins(&driving) == begins(&neither) && ends(&driven) == ends(&neither));
+    }
+
     #[test]
     fn relief_delays_a_pair_until_the_other_gives_way() {
         let relief = FlankRelief { shape: ReliefShape::Linear, length_mm: 2.0, amount_um: 20.0 };

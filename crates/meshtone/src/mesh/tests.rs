@@ -1,6 +1,7 @@
-//! Tests of a planet in a ring with internal teeth.
+//! Tests of a planet in a ring with internal teeth, and of external wheels whose tips differ.
 #![allow(clippy::unwrap_used)]
 
+use std::f64::consts::TAU;
 use std::num::NonZeroUsize;
 
 use super::corner::Corner;
@@ -73,7 +74,7 @@ fn tabulated(gears: &Gears, teeth: &Teeth, faults: &[Fault], shape: TipShape) ->
     let of = |wheel| damaged.iter().position(|tooth| tooth.wheel == wheel);
     let kind = PairKind { pinion: of(WheelName::Pinion), gear: of(WheelName::Gear), ..SOUND };
     let positions: Vec<f64> = (0..600).map(|n| -0.4 + 0.005 * f64::from(n)).collect();
-    PairTables::new(&pairs, shape, Contact::Unilateral).tabulate(&kind, &positions, 0.005)
+    PairTables::new(&pairs, [shape; 2], Contact::Unilateral).tabulate(&kind, &positions, 0.005)
 }
 
 #[test]
@@ -116,7 +117,7 @@ fn chamfer_and_relief_are_at_the_tips() {
     let pairs = Pairs::new(&teeth, &[], &gears);
     let path = &teeth.path;
     let whole = TipShape { active_profile_shortening: 0.0, ..SHAPE };
-    let ends = PairTables::new(&pairs, whole, Contact::Unilateral).path_of_sound_teeth();
+    let ends = PairTables::new(&pairs, [whole; 2], Contact::Unilateral).path_of_sound_teeth();
     for (wheel, end) in [WheelName::Gear, WheelName::Pinion].into_iter().zip(ends) {
         let own = teeth.wheel(wheel);
         let radius_mm = path.curvature_mm(wheel, end).hypot(own.base_radius_mm);
@@ -127,8 +128,74 @@ fn chamfer_and_relief_are_at_the_tips() {
         }
     }
     assert!(0.0 < ends[0] && ends[1] < path.contact_ratio, "{ends:?}");
-    let active = PairTables::new(&pairs, SHAPE, Contact::Unilateral).path_of_sound_teeth();
+    let active = PairTables::new(&pairs, [SHAPE; 2], Contact::Unilateral).path_of_sound_teeth();
     assert!((ends[1] - ends[0] - (active[1] - active[0]) - 0.05).abs() < 1e-12);
+}
+
+const SHARP: TipShape = TipShape {
+    chamfer_mm: 0.0,
+    active_profile_shortening: 0.0,
+    relief: FlankRelief { amount_um: 0.0, ..SHAPE.relief },
+};
+
+/// A driving wheel of 17 teeth and a driven one of 38.
+fn external() -> (Gears, Teeth) {
+    let gears = Gears { points_per_tooth: 2000, ..Gears::new(3.0, 17, 38, 15.0) };
+    let teeth = teeth(&gears, [10.0, 10.0]);
+    (gears, teeth)
+}
+
+// The path ends where the radius of curvature of the driving wheel's flank is that of its tip, and begins at that of the driven wheel's.
+#[test]
+fn a_chamfer_shortens_the_path_at_its_wheel_s_end() {
+    let (gears, teeth) = external();
+    let pairs = Pairs::new(&teeth, &[], &gears);
+    let ends = |shapes| PairTables::new(&pairs, shapes, Contact::Unilateral).path_of_sound_teeth();
+    let [begins, ends_at] = ends([SHARP; 2]);
+    assert!(begins.abs() < 1e-12 && (ends_at - teeth.path.contact_ratio).abs() < 1e-12);
+    let lost = |module_mm: f64, teeth: f64| {
+        let (tip_mm, base_mm) =
+            (module_mm * (teeth / 2.0 + 1.0), module_mm * teeth / 2.0 * 20.0_f64.to_radians().cos());
+        let curvature_mm = |radius_mm: f64| (radius_mm.powi(2) - base_mm.powi(2)).sqrt();
+        (curvature_mm(tip_mm) - curvature_mm(tip_mm - 0.4)) / (TAU * base_mm / teeth)
+    };
+    let chamfered = TipShape { chamfer_mm: 0.4, ..SHARP };
+    let shortened = TipShape { active_profile_shortening: 0.1, ..SHARP };
+    let [of_pinion, of_gear] = [17.0, 38.0].map(|teeth| lost(3.0, teeth));
+    assert!(of_pinion > 0.05 && (of_gear / of_pinion - 1.0).abs() > 0.1, "{of_pinion} {of_gear}");
+    for (shapes, [start, end]) in [
+        ([chamfered, SHARP], [0.0, of_pinion]),
+        ([SHARP, chamfered], [of_gear, 0.0]),
+        ([chamfered; 2], [of_gear, of_pinion]),
+        ([shortened, SHARP], [0.0, 0.05]),
+        ([SHARP, shortened], [0.05, 0.0]),
+    ] {
+        let [from, until] = ends(shapes);
+        assert!((from - begins - start).abs() < 1e-12, "{from} {start}");
+        assert!((ends_at - until - end).abs() < 1e-12, "{until} {end}");
+    }
+}
+
+#[test]
+fn a_mirrored_pair_goes_through_its_path_the_other_way() {
+    let (gears, teeth) = external();
+    let relieved = TipShape { relief: SHAPE.relief, ..SHARP };
+    let chamfered = TipShape { chamfer_mm: 0.4, ..SHARP };
+    let shapes = [relieved, chamfered];
+    let mirrored = gears.clone().exchanged();
+    let mirrored_teeth = crate::wheel::teeth(&mirrored, [10.0, 10.0]);
+    let positions: Vec<f64> = (0..500).map(|n| -0.4 + 0.005 * f64::from(n)).collect();
+    let from_end = positions.iter().rev().map(|position| teeth.path.from_end(*position)).collect::<Vec<_>>();
+    let states = |gears: &Gears, teeth: &Teeth, shapes, positions: &[f64]| {
+        let pairs = Pairs::new(teeth, &[], gears);
+        PairTables::new(&pairs, shapes, Contact::Unilateral).tabulate(&SOUND, positions, 0.005)
+    };
+    let there = states(&gears, &teeth, shapes, &positions);
+    let back = states(&mirrored, &mirrored_teeth, [chamfered, relieved], &from_end);
+    for (own, other) in there.iter().zip(back.iter().rev()) {
+        assert!((own.stiffness_n_per_m / other.stiffness_n_per_m - 1.0).abs() < 1e-9);
+        assert!((own.separation_m - other.separation_m).abs() < 1e-13);
+    }
 }
 
 #[test]
@@ -154,18 +221,16 @@ fn a_planet_s_mesh_carries_its_load_at_rest() {
             }),
         };
         let sequence = PairSequence::new(31, 81, &[]).unwrap();
-        Mesh::new(&[pairs], shape, sequence, NonZeroUsize::new(points).unwrap(), parameters)
+        Mesh::new(&[pairs], [shape; 2], sequence, NonZeroUsize::new(points).unwrap(), parameters)
     };
-    let relief = FlankRelief { amount_um: 0.0, ..SHAPE.relief };
-    let sharp = TipShape { chamfer_mm: 0.0, active_profile_shortening: 0.0, relief };
-    let ideal = mesh(Contact::Bilateral, sharp, 400);
+    let ideal = mesh(Contact::Bilateral, SHARP, 400);
     // The mean of the independent simulator's, of steel with 206 GPa.
     assert!((ideal.mean_stiffness_n_per_m / (1152.7e6 * 210.0 / 206.0) - 1.0).abs() < 2e-3);
     assert!((ideal.contact_ratio - 1.939677).abs() < 5e-7);
 
     // Corners let a pair take up its load without a jump: the finer the points, the smaller the steps of the deflection.
     let largest_step = |points: usize| {
-        let real = mesh(Contact::Unilateral, TipShape { relief, ..SHAPE }, points);
+        let real = mesh(Contact::Unilateral, TipShape { relief: SHARP.relief, ..SHAPE }, points);
         let at_rest = real.at_rest(2000.0, 31..33);
         for (point, deflection_m) in at_rest.deflection_m.iter().enumerate() {
             let carried: f64 = at_rest.pair_force_n.iter().map(|pair| pair[point]).sum();

@@ -25,10 +25,9 @@ pub fn teeth(gears: &Gears, bore_radii_mm: [f64; 2]) -> Teeth {
 pub fn relieved_teeth(gears: &Gears, bore_radii_mm: [f64; 2], relief: Option<TipRelief>) -> Teeth {
     let pinion = Wheel::new(gears, WheelName::Pinion, bore_radii_mm[0]);
     let gear = Wheel::new(gears, WheelName::Gear, bore_radii_mm[1]);
-    let profile = |wheel: &Wheel| {
+    let profile = |wheel: &Wheel, reduction_mm: f64| {
         let root = Root::Published(joint(wheel));
-        let (points, reduction_mm) = (gears.points_per_tooth, gears.uniform_flank_reduction_mm);
-        Arc::new(tooth_profile(wheel, points, reduction_mm, relief, root))
+        Arc::new(tooth_profile(wheel, gears.points_per_tooth, reduction_mm, relief, root))
     };
     let own = Teeth::with_profiles(gears, [pinion, gear], profile);
     let contact =

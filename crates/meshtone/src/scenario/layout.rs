@@ -411,7 +411,7 @@ impl Layout {
         Ok(places.into_iter().map(|place| place.map(|mm| mm * 1e-3)).collect())
     }
 
-    /// The two wheels of a mesh as a pair: what they share must be the same.
+    /// The two wheels of a mesh as a pair.
     fn gears_of(
         &self,
         scenario: &Scenario,
@@ -430,21 +430,6 @@ impl Layout {
             return refuse(
                 format!("both wheels sit on shaft {:?}; must be two shafts", pinion.shaft),
                 "name wheels of two shafts",
-            );
-        }
-        let mates = [
-            ("tip_chamfer_mm", pinion.tip_chamfer_mm == gear.tip_chamfer_mm),
-            ("flank_relief", pinion.flank_relief == gear.flank_relief),
-            ("active_profile_shortening", pinion.active_profile_shortening == gear.active_profile_shortening),
-            (
-                "uniform_flank_reduction_mm",
-                pinion.uniform_flank_reduction_mm == gear.uniform_flank_reduction_mm,
-            ),
-        ];
-        if let Some((key, _)) = mates.iter().find(|(_, same)| !same) {
-            return refuse(
-                format!("the wheels differ in {key}; must be the same of both"),
-                "give both wheels the same",
             );
         }
         let mut gears = mesh.gears(pinion, gear, scenario.material);

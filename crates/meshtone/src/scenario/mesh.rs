@@ -66,7 +66,7 @@ impl ScenarioMesh {
         self.wheels.join("-")
     }
 
-    /// The geometry of two wheels in this mesh: what they share is that of the first, which validation has found to be the same of both.
+    /// The geometry of two wheels in this mesh.
     ///
     /// # Arguments
     /// * `pinion`, `gear` - the driving and the driven wheel
@@ -86,10 +86,11 @@ impl ScenarioMesh {
         gears.backlash_mm = self.backlash_mm;
         gears.material = material;
         (gears.pinion_material, gears.gear_material) = (pinion.material, gear.material);
-        gears.flank_relief = pinion.flank_relief;
-        gears.tip_chamfer_mm = pinion.tip_chamfer_mm;
-        gears.active_profile_shortening = pinion.active_profile_shortening;
-        gears.uniform_flank_reduction_mm = pinion.uniform_flank_reduction_mm;
+        let wheels = [pinion, gear];
+        gears.flank_relief = wheels.map(|wheel| wheel.flank_relief);
+        gears.tip_chamfer_mm = wheels.map(|wheel| wheel.tip_chamfer_mm);
+        gears.active_profile_shortening = wheels.map(|wheel| wheel.active_profile_shortening);
+        gears.uniform_flank_reduction_mm = wheels.map(|wheel| wheel.uniform_flank_reduction_mm);
         (gears.points_per_tooth, gears.foundation) = (self.points_per_tooth, self.foundation);
         gears
     }
@@ -113,10 +114,10 @@ impl ScenarioMesh {
             wheel.addendum = side.choose(gears.pinion_addendum, gears.gear_addendum);
             wheel.material = side.choose(gears.pinion_material, gears.gear_material);
             wheel.dedendum = side.choose(gears.pinion_dedendum, gears.gear_dedendum);
-            wheel.flank_relief = gears.flank_relief;
-            wheel.tip_chamfer_mm = gears.tip_chamfer_mm;
-            wheel.active_profile_shortening = gears.active_profile_shortening;
-            wheel.uniform_flank_reduction_mm = gears.uniform_flank_reduction_mm;
+            wheel.flank_relief = gears.flank_relief[side as usize];
+            wheel.tip_chamfer_mm = gears.tip_chamfer_mm[side as usize];
+            wheel.active_profile_shortening = gears.active_profile_shortening[side as usize];
+            wheel.uniform_flank_reduction_mm = gears.uniform_flank_reduction_mm[side as usize];
         }
     }
 }

@@ -10,8 +10,8 @@ use super::{
 use crate::damage::keys_of_every_fault;
 use crate::error_table::ErrorTable;
 use crate::keys::{
-    Field, KeyDescription, KeyKind, KeyRow, Keys, NumberFiles, Range, describe, describe_rows, documented,
-    field, flatten, load, read_rows, row, rows, rows_of,
+    Field, KeyDescription, KeyKind, KeyRow, KeyValue, Keys, NumberFiles, Range, describe, describe_rows,
+    documented, field, flatten, load, read_rows, row, rows, rows_of,
 };
 use crate::wheel::quality::{DEVIATION_KEYS, file_deviations};
 use crate::wheel::rows::*;
@@ -207,6 +207,32 @@ fn both(row: KeyRow<ScenarioWheel>) -> KeyRow<Scenario> {
     row.of_all::<Scenario>(|scenario| &scenario.wheels, |scenario| &mut scenario.wheels)
 }
 
+/// The rows of a key of both wheels, and of those of the pinion and of the gear alone, which state the wheels' values where they differ.
+macro_rules! each {
+    ($name:ident, $row:expr, $example:literal) => {{
+        fn alike(scenario: &Scenario) -> &[ScenarioWheel] {
+            let wheels = &scenario.wheels;
+            let is_alike = |wheel: &ScenarioWheel| wheel.$name.write() == wheels[0].$name.write();
+            if wheels.iter().all(is_alike) { wheels } else { &[] }
+        }
+        let own = |name, wheel| {
+            let row = $row
+                .renamed(name, "the value of this wheel alone, where they differ")
+                .otherwise("that of both wheels");
+            row.alternative($example).of::<Scenario>(wheel)
+        };
+        let [pinion, gear]: [Field<Scenario, ScenarioWheel>; 2] = [
+            Field::new(|of| of.wheels.first().filter(|_| alike(of).is_empty()), |of| of.wheels.first_mut()),
+            Field::new(|of| of.wheels.get(1).filter(|_| alike(of).is_empty()), |of| of.wheels.get_mut(1)),
+        ];
+        [
+            $row.of_all(alike, |scenario| &mut scenario.wheels),
+            own(concat!("pinion_", stringify!($name)), pinion),
+            own(concat!("gear_", stringify!($name)), gear),
+        ]
+    }};
+}
+
 /// The keys above the sections.
 pub(super) fn top() -> Section {
     Section { name: "", rows: Scenario::rows_of_top_of_pair() }
@@ -220,7 +246,9 @@ pub(super) fn gears() -> Section {
             .otherwise("gears.material")
             .alternative("\"bronze\"")
     };
-    let rows = vec![
+    let relief = "the relief of the flanks near the tips, as a gap in µm";
+    let relief = || row("flank_relief", "", relief, field!(in Of: flank_relief));
+    let mut rows = vec![
         module_row(field!(in ScenarioMesh: module_mm)).of(MESH),
         teeth_row("pinion_teeth", field!(in Of: teeth)).of(PINION),
         teeth_row("gear_teeth", field!(in Of: teeth)).of(GEAR),
@@ -245,19 +273,16 @@ pub(super) fn gears() -> Section {
         row("material", "", "the material of wheels and shafts", field!(in Scenario: material)),
         material("pinion_material").of(PINION),
         material("gear_material").of(GEAR),
-        both(row(
-            "flank_relief",
-            "",
-            "the relief of the flanks near the tips, as a gap in µm",
-            field!(in Of: flank_relief),
-        )),
-        both(chamfer_row(field!(in Of: tip_chamfer_mm))),
+    ];
+    rows.extend(each!(flank_relief, relief(), "{ amount_um = 20.0 }"));
+    rows.extend(each!(tip_chamfer_mm, chamfer_row(field!(in Of: tip_chamfer_mm)), "0.69"));
+    rows.extend([
         both(shortening_row(field!(in Of: active_profile_shortening))),
         backlash_row(field!(in ScenarioMesh: backlash_mm)).of(MESH),
         both(flank_reduction_row(field!(in Of: uniform_flank_reduction_mm))),
         points_row(field!(in ScenarioMesh: points_per_tooth)).of(MESH),
         foundation_row(field!(in ScenarioMesh: foundation)).of(MESH),
-    ];
+    ]);
     Section { name: "gears", rows }
 }
 

@@ -21,7 +21,7 @@ use super::Scenario;
 /// assert_eq!(log_deviation(&base, "gears.module_mm"), None);
 /// ```
 pub fn log_deviation(base: &Scenario, key: &str) -> Option<f64> {
-    const OF_PAIR: [(&str, f64); 14] = [
+    const OF_PAIR: [(&str, f64); 16] = [
         ("rig.bearing_stiffness_n_per_m", 0.3),
         // A rig is given by these frequencies or by the stiffnesses; the others it does not have.
         ("rig.support.base_hz", 0.3),
@@ -36,6 +36,8 @@ pub fn log_deviation(base: &Scenario, key: &str) -> Option<f64> {
         ("rig.gear_shaft.damping_ratio", 0.5),
         ("rig.mesh_damping_ratio", 0.5),
         ("gears.tip_chamfer_mm", 0.3),
+        ("gears.pinion_tip_chamfer_mm", 0.3),
+        ("gears.gear_tip_chamfer_mm", 0.3),
         ("gears.backlash_mm", 0.2),
     ];
     if let Some((_, deviation)) = OF_PAIR.into_iter().find(|(own, _)| *own == key) {

@@ -33,16 +33,16 @@ pub struct ScenarioWheel {
     pub addendum: f64,
     /// (-) Dedendum coefficient of the basic rack. Default 1.25.
     pub dedendum: f64,
-    /// (mm) Height of the tips' chamfer; none for 0.23 modules. Mates have the same.
+    /// (mm) Height of the tips' chamfer; none for 0.23 modules.
     pub tip_chamfer_mm: Option<f64>,
-    /// (base pitches) By how much the path of contact is shorter than the tips between their chamfers make it, half at either end.
-    /// Default 0.1. Mates have the same.
+    /// (base pitches) By how much the path of contact is shorter than the tips between their chamfers make it, half of it at the end where this
+    /// wheel's tips touch, half at the other one, where its mate's tips touch by the mate's. Default 0.1.
     pub active_profile_shortening: f64,
-    /// (mm) Constant reduction of the working flank. Default 0. Mates have the same.
+    /// (mm) Constant reduction of the working flank. Default 0.
     pub uniform_flank_reduction_mm: f64,
-    /// Relief of the flank near the tip, as a gap. Default none. Mates have the same.
+    /// Relief of the flank near the tip, as a gap. Default none.
     pub flank_relief: FlankRelief,
-    /// Material; none for the scenario's. Mates have the same.
+    /// Material; none for the scenario's.
     pub material: Option<Material>,
     /// Mass and inertias, instead of those of a solid disc.
     pub inertia: WheelInertia,
@@ -138,7 +138,6 @@ const ALONG: Range = Range::between(Included(0.0), Included(1.0))
 const SHARE: Range = Range::from_to(0.0, 1.0);
 /// (-) Largest slope that varies once a revolution, over the rms deviation of the profiles.
 pub(crate) const MOST_WOBBLE: f64 = 3.0;
-const MATES: &str = "the same of both wheels of a mesh";
 
 keys! {
     "wheel": ScenarioWheel = Self {
@@ -180,10 +179,10 @@ keys! {
     = { profile_shift_row("profile_shift", field!(profile_shift)) };
     = { addendum_row("addendum", field!(addendum)) };
     = { dedendum_row("dedendum", field!(dedendum)) };
-    = { chamfer_row(field!(tip_chamfer_mm)).rule(MATES) };
-    = { shortening_row(field!(active_profile_shortening)).rule(MATES) };
-    = { flank_reduction_row(field!(uniform_flank_reduction_mm)).rule(MATES) };
-    flank_relief "" "the relief of the flanks near the tips, as a gap in µm" .rule(MATES);
+    = { chamfer_row(field!(tip_chamfer_mm)) };
+    = { shortening_row(field!(active_profile_shortening)) };
+    = { flank_reduction_row(field!(uniform_flank_reduction_mm)) };
+    flank_relief "" "the relief of the flanks near the tips, as a gap in µm";
     material "" "its material" .otherwise("that of the gearbox").alternative("\"steel\"");
     inertia "" "its mass and inertias, any of the three"
         .otherwise("those of a solid disc of pitch radius")

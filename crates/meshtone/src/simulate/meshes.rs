@@ -12,7 +12,7 @@ use crate::mesh::{
 };
 use crate::operation::TimeGrid;
 use crate::scenario::{Layout, Scenario};
-use crate::wheel::{Gears, NamedGears};
+use crate::wheel::{Gears, NamedGears, WheelName};
 
 /// The meshes of a scenario.
 ///
@@ -135,8 +135,10 @@ fn checked(mesh: Mesh, gears: &NamedGears) -> Result<Mesh, ScenarioError> {
     }
     if mesh.contact_ratio <= 0.0 {
         let problem = "the tips' chamfers and the active profile's shortening leave no path of contact";
-        let help =
-            format!("lower {} or {}", gears.key("tip_chamfer_mm"), gears.key("active_profile_shortening"));
+        let [pinion_mm, gear_mm] = WheelName::BOTH.map(|wheel| gears.chamfer_mm(wheel));
+        let larger = if pinion_mm < gear_mm { WheelName::Gear } else { WheelName::Pinion };
+        let chamfer = gears.key_of_each(larger, "tip_chamfer_mm", &gears.tip_chamfer_mm);
+        let help = format!("lower {chamfer} or {}", gears.key("active_profile_shortening"));
         return Err(ScenarioError::new(gears.whole(), "", problem).with_help(help));
     }
     if mesh.face.overlap() == 0.0 && mesh.contact_ratio > Mesh::MOST_CONTACT_RATIO {
@@ -218,16 +220,17 @@ impl MeshOf<'_> {
             face_width_m: width_m,
             friction: self.friction(),
         };
-        let shape = TipShape {
-            chamfer_mm: gears.chamfer_mm(),
+        let shapes = WheelName::BOTH.map(|wheel| TipShape {
+            chamfer_mm: gears.chamfer_mm(wheel),
             active_profile_shortening: match self.contact {
-                Contact::Unilateral => gears.active_profile_shortening,
+                Contact::Unilateral => gears.active_profile_shortening[wheel as usize],
                 Contact::Bilateral => 0.0,
             },
-            relief: gears.flank_relief,
+            relief: gears.flank_relief[wheel as usize],
+        });
+        let tabulated = |faces: &[Pairs]| {
+            checked(Mesh::new(faces, shapes, sequence, points_per_pitch, parameters), gears)
         };
-        let tabulated =
-            |faces: &[Pairs]| checked(Mesh::new(faces, shape, sequence, points_per_pitch, parameters), gears);
         if slices == 1 {
             return tabulated(&[Pairs::new(teeth, damaged, gears)]);
         }
@@ -269,7 +272,7 @@ impl MeshOf<'_> {
         let varies_along_contact_lines = || {
             self.along_face.is_some()
                 || self.wobbles()
-                || gears.flank_relief.amount_um > 0.0
+                || gears.is_relieved()
                 || self.pair.damaged.iter().any(DamagedTooth::varies_over_face)
         };
         gears.is_crowned() || gears.is_helical() && varies_along_contact_lines()

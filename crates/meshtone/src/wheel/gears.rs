@@ -49,18 +49,18 @@ pub struct Gears {
     pub pinion_material: Option<Material>,
     /// Material of the gear; none for that of the shafts.
     pub gear_material: Option<Material>,
-    /// Relief of the flank near the tip, as a gap. Default none.
-    pub flank_relief: FlankRelief,
-    /// (mm) Height of the chamfer or rounding of all tips, which the flank ends below; none for 0.23 modules.
-    pub tip_chamfer_mm: Option<f64>,
-    /// (base pitches) By how much the path of contact is shorter than the tips between their chamfers make it, half at either end.
-    /// Default 0.1.
-    pub active_profile_shortening: f64,
+    /// Relief of the flank near the tip of pinion and gear, as a gap. Default none.
+    pub flank_relief: [FlankRelief; 2],
+    /// (mm) Height of the chamfer or rounding of the tips of pinion and gear, which the flank ends below; none for 0.23 modules.
+    pub tip_chamfer_mm: [Option<f64>; 2],
+    /// (base pitches) By how much the path of contact is shorter than the tips between their chamfers make it: half that of the pinion at its
+    /// end, half that of the gear at its start. Default 0.1.
+    pub active_profile_shortening: [f64; 2],
     /// (mm) Normal backlash; none for two thirds of `0.06 + 0.0005 a + 0.03 m`, a the centre distance, and what a given centre
     /// distance opens.
     pub backlash_mm: Option<f64>,
-    /// (mm) Constant reduction of the working flank. Default 0.
-    pub uniform_flank_reduction_mm: f64,
+    /// (mm) Constant reduction of the working flank of pinion and gear. Default 0.
+    pub uniform_flank_reduction_mm: [f64; 2],
     /// Number of points along a tooth's profile. Default 10 000.
     pub points_per_tooth: usize,
     /// Coefficients of the fillet foundation's compliance. Default: Sainsot et al. 2004.
@@ -108,11 +108,11 @@ impl Gears {
             material: Material::default(),
             pinion_material: None,
             gear_material: None,
-            flank_relief: FlankRelief::default(),
-            tip_chamfer_mm: None,
-            active_profile_shortening: 0.1,
+            flank_relief: [FlankRelief::default(); 2],
+            tip_chamfer_mm: [None; 2],
+            active_profile_shortening: [0.1; 2],
             backlash_mm: None,
-            uniform_flank_reduction_mm: 0.0,
+            uniform_flank_reduction_mm: [0.0; 2],
             points_per_tooth: 10_000,
             foundation: FoundationCoefficients::default(),
             internal: false,
@@ -122,9 +122,17 @@ impl Gears {
 }
 
 impl Gears {
-    /// (mm) Height of the tips' chamfer, given or by default.
-    pub fn chamfer_mm(&self) -> f64 {
-        self.tip_chamfer_mm.unwrap_or(0.23 * self.module_mm)
+    /// (mm) Height of the chamfer of a wheel's tips, given or by default.
+    ///
+    /// # Arguments
+    /// * `wheel` - which of the two
+    pub fn chamfer_mm(&self, wheel: WheelName) -> f64 {
+        self.tip_chamfer_mm[wheel as usize].unwrap_or(0.23 * self.module_mm)
+    }
+
+    /// Whether the flank of either wheel is relieved near its tip.
+    pub(crate) fn is_relieved(&self) -> bool {
+        self.flank_relief.iter().any(|relief| relief.amount_um > 0.0)
     }
 
     /// The same wheels where the gear drives the pinion; not of a ring, which is always the second wheel.
@@ -135,6 +143,10 @@ impl Gears {
         std::mem::swap(&mut self.pinion_addendum, &mut self.gear_addendum);
         std::mem::swap(&mut self.pinion_dedendum, &mut self.gear_dedendum);
         std::mem::swap(&mut self.pinion_material, &mut self.gear_material);
+        self.flank_relief.reverse();
+        self.tip_chamfer_mm.reverse();
+        self.active_profile_shortening.reverse();
+        self.uniform_flank_reduction_mm.reverse();
         self.hand = self.hand.other();
         self
     }

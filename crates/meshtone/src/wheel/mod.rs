@@ -225,9 +225,9 @@ pub(crate) fn teeth_of_known(gears: &Gears, bore_radii_mm: [f64; 2], known: &Kno
     let pinion = Wheel::new(gears, WheelName::Pinion, bore_radii_mm[0]);
     let gear = Wheel::new(gears, WheelName::Gear, bore_radii_mm[1]);
     // A relief that thins the tip by half its thickness would leave nothing to touch: it is the published model's alone.
-    let profile = |wheel: &Wheel| {
+    let profile = |wheel: &Wheel, reduction_mm: f64| {
         let wheel = Wheel { face_width_mm: 0.0, bore_radius_mm: 0.0, ..*wheel };
-        known.get((wheel, gears.points_per_tooth, gears.uniform_flank_reduction_mm), |key| {
+        known.get((wheel, gears.points_per_tooth, reduction_mm), |key| {
             tooth_profile(&key.0, key.1, key.2, None, Root::Arc)
         })
     };
@@ -240,15 +240,17 @@ impl Teeth {
     /// # Arguments
     /// * `gears` - geometry of the pair
     /// * `wheels` - the pinion and the gear
-    /// * `profile` - makes the profile of a wheel's section
+    /// * `profile` - makes the profile of a wheel's section, with the constant reduction of its flank, in mm
     pub(crate) fn with_profiles(
         gears: &Gears,
         [pinion, gear]: [Wheel; 2],
-        profile: impl Fn(&Wheel) -> Arc<ToothProfile>,
+        profile: impl Fn(&Wheel, f64) -> Arc<ToothProfile>,
     ) -> Self {
         let section = |wheel: &Wheel| wheel.normal_section(gears.pressure_angle_deg.to_radians());
         let (pinion_section, gear_section) = (section(&pinion), section(&gear));
-        let (pinion_profile, gear_profile) = (profile(&pinion_section), profile(&gear_section));
+        let [pinion_mm, gear_mm] = gears.uniform_flank_reduction_mm;
+        let (pinion_profile, gear_profile) =
+            (profile(&pinion_section, pinion_mm), profile(&gear_section, gear_mm));
         let contact = contact_line(&pinion, &pinion_profile, &gear, &gear_profile);
         let path = PathOfContact::new(&pinion, &gear);
         Self { pinion, gear, pinion_section, gear_section, pinion_profile, gear_profile, contact, path }

@@ -65,7 +65,17 @@ impl<'a> NamedGears<'a> {
         }
     }
 
-    /// A key that both wheels have in common: `gears.module_mm`, `mesh[0].module_mm`, `wheel[0].tip_chamfer_mm`.
+    /// A key of one of the wheels that `[gears]` has of both while they are alike: `gears.tip_chamfer_mm`,
+    /// `gears.pinion_tip_chamfer_mm`, `wheel[0].tip_chamfer_mm`.
+    ///
+    /// # Arguments
+    /// * `wheel`, `key` - as of [`Self::key_of`]
+    /// * `of_each` - what both wheels have at the key
+    pub(crate) fn key_of_each<V: PartialEq>(&self, wheel: WheelName, key: &str, [a, b]: &[V; 2]) -> String {
+        if self.mesh.is_none() && a == b { self.key(key) } else { self.key_of(wheel, key) }
+    }
+
+    /// A key that both wheels have in common: `gears.module_mm`, `mesh[0].module_mm`, `wheel[0].active_profile_shortening`.
     pub(crate) fn key(&self, key: &str) -> String {
         const OF_MESH: [&str; 8] = [
             "module_mm",

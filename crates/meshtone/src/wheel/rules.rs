@@ -43,16 +43,18 @@ impl Gears {
         })
     }
 
-    /// (mm) Half the thickness of a tooth at a distance from its tip, of the wheel whose teeth are thinner there.
-    pub(crate) fn half_thickness_below_tip_mm(&self, below_tip_mm: f64) -> f64 {
-        let of_both = self.wheels().map(|wheel| half_thickness_below_tip_mm(&wheel, below_tip_mm));
-        of_both.into_iter().fold(f64::INFINITY, f64::min)
+    /// (mm) Half the thickness of a tooth of pinion and gear at a distance from its tip, before the constant reduction of its flank.
+    pub(crate) fn half_thicknesses_below_tip_mm(&self, below_tip_mm: f64) -> [f64; 2] {
+        self.wheels().map(|wheel| half_thickness_below_tip_mm(&wheel, below_tip_mm))
     }
 
-    /// (mm) How far the tips' chamfers and their relief reach inwards from the tip; 0 where there is none.
-    pub fn tip_lengths_mm(&self) -> [f64; 2] {
-        let relief = &self.flank_relief;
-        [self.chamfer_mm(), if relief.amount_um > 0.0 { relief.length_mm } else { 0.0 }]
+    /// (mm) How far the chamfers of a wheel's tips and their relief reach inwards from the tip; 0 where there is none.
+    ///
+    /// # Arguments
+    /// * `wheel` - which of the two
+    pub fn tip_lengths_mm(&self, wheel: WheelName) -> [f64; 2] {
+        let relief = &self.flank_relief[wheel as usize];
+        [self.chamfer_mm(wheel), if relief.amount_um > 0.0 { relief.length_mm } else { 0.0 }]
     }
 
     /// (mm) Height of a tooth from root to tip, of the wheel whose teeth are higher.
@@ -74,25 +76,37 @@ impl NamedGears<'_> {
         pressure_angle(self)?;
         contact_ratio(self)?;
         helix(self)?;
-        let thinner_mm = self.half_thicknesses_mm().into_iter().fold(f64::INFINITY, f64::min);
-        let reduction_mm = self.uniform_flank_reduction_mm;
-        below(&self.key("uniform_flank_reduction_mm"), reduction_mm, thinner_mm, HALF_THICKNESS)?;
-        let relief = &self.flank_relief;
-        if relief.amount_um > 0.0 {
-            let key = self.key("flank_relief.length_mm");
-            below(&key, relief.length_mm, 2.0 * self.module_mm, "2 modules")?;
+        let (key, reduction_mm, thickness_mm) = self.thinner(self.half_thicknesses_mm());
+        below(&key, reduction_mm, thickness_mm, HALF_THICKNESS)?;
+        for (wheel, relief) in WheelName::BOTH.into_iter().zip(&self.flank_relief) {
+            if relief.amount_um > 0.0 {
+                let key = self.key_of_each(wheel, "flank_relief.length_mm", &self.flank_relief);
+                below(&key, relief.length_mm, 2.0 * self.module_mm, "2 modules")?;
+            }
         }
         if self.end_relief.amount_um > 0.0 {
             let (length_mm, half_mm) = (self.end_relief.length_mm, self.face_width_mm / 2.0);
             let problem = format!("must be at most {half_mm} mm, half the face width");
             require(&self.key("end_relief.length_mm"), length_mm, length_mm <= half_mm, problem)?;
         }
-        below(&self.key("tip_chamfer_mm"), self.chamfer_mm(), self.module_mm, "the module")?;
+        for wheel in WheelName::BOTH {
+            let key = self.key_of_each(wheel, "tip_chamfer_mm", &self.tip_chamfer_mm);
+            below(&key, self.chamfer_mm(wheel), self.module_mm, "the module")?;
+        }
         // The default grows with the centre distance: it is no typing error of the user.
         if let Some(backlash_mm) = self.backlash_mm {
             below(&self.key("backlash_mm"), backlash_mm, self.module_mm, "the module")?;
         }
         tip_thickness(self)
+    }
+
+    /// The constant reduction of a flank, in mm, of the wheel of whose thickness it leaves less: its key, its value and that thickness.
+    fn thinner(&self, thickness_mm: [f64; 2]) -> (String, f64, f64) {
+        let removed_mm = self.uniform_flank_reduction_mm;
+        let left_mm = |wheel: usize| thickness_mm[wheel] - removed_mm[wheel];
+        let wheel = if left_mm(0) <= left_mm(1) { WheelName::Pinion } else { WheelName::Gear };
+        let key = self.key_of_each(wheel, "uniform_flank_reduction_mm", &removed_mm);
+        (key, removed_mm[wheel as usize], thickness_mm[wheel as usize])
     }
 
     /// Warnings about wheels that can be simulated.
@@ -211,12 +225,11 @@ fn contact_ratio(gears: &NamedGears) -> Check {
 
 /// Crowning must leave some of the tip: the compliances take what is beyond the tooth's centre line for a negative thickness.
 fn tip_thickness(gears: &NamedGears) -> Check {
-    let left = gears.half_thickness_below_tip_mm(0.0);
-    let removed = gears.uniform_flank_reduction_mm;
+    let (key, removed, left) = gears.thinner(gears.half_thicknesses_below_tip_mm(0.0));
     let problem = format!(
         "{removed:?} mm is removed where the tooth is only {left:.4} mm thick from its centre line, at the tip; must leave some of the tip"
     );
-    require(&gears.key("uniform_flank_reduction_mm"), removed, removed < left, problem)
+    require(&key, removed, removed < left, problem)
 }
 
 /// (mm) Half thickness of an unrelieved tooth, `below_tip_mm` from the tip along its centre line; of its foot on the

@@ -663,7 +663,7 @@ fn mesh_sums_every_pair_in_contact() {
     let mut gears = Gears::new(2.0, 80, 90, 20.0);
     gears.pressure_angle_deg = 14.5;
     gears.points_per_tooth = 1_000;
-    gears.tip_chamfer_mm = Some(0.0);
+    gears.tip_chamfer_mm = [Some(0.0); 2];
     let mut scenario = Scenario::new(GearPair::example());
     scenario.model = Model::Linear;
     scenario.set_gears(&gears);

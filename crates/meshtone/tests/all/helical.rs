@@ -21,8 +21,8 @@ fn pair(teeth: [u32; 2], module_mm: f64, face_width_mm: f64, helix_angle_deg: f6
     });
     let mut gears = scenario.gears();
     gears.helix_angle_deg = helix_angle_deg;
-    gears.tip_chamfer_mm = Some(0.0);
-    gears.active_profile_shortening = 0.0;
+    gears.tip_chamfer_mm = [Some(0.0); 2];
+    gears.active_profile_shortening = [0.0; 2];
     gears.material = Material::Given(MaterialConstants {
         youngs_modulus_gpa: 206.0,
         poisson_ratio: 0.3,

@@ -62,13 +62,22 @@ fn the_driving_wheel_comes_first() {
         (gears.pinion_teeth, gears.gear_teeth) = (teeth[0], teeth[1]);
         (gears.pinion_profile_shift, gears.gear_profile_shift) =
             if teeth[0] < teeth[1] { (0.3, 0.0) } else { (0.0, 0.3) };
+        gears.tip_chamfer_mm = [Some(0.3), Some(0.8)];
+        gears.flank_relief[0].amount_um = 15.0;
+        gears.active_profile_shortening = [0.1; 2];
+        if teeth[0] > teeth[1] {
+            gears.tip_chamfer_mm.reverse();
+            gears.flank_relief.reverse();
+        }
         scenario.set_gears(&gears);
         let meshes = stages(&scenario).unwrap().meshes_at(200.try_into().unwrap()).unwrap();
-        meshes[0].stiffness_n_per_mm(0..1)
+        [meshes[0].stiffness_n_per_mm(0..1), meshes[0].at_rest(500.0, 0..1).deflection_m]
     };
     let [overrun, named, driven] = [with([17, 38], -10.0), with([38, 17], 10.0), with([17, 38], 10.0)];
-    assert!(sign_of_difference(&named, &overrun, 1.0) < 1e-12);
-    assert!(sign_of_difference(&named, &driven, 1.0) > 1e-3);
+    for (named, (overrun, driven)) in named.iter().zip(overrun.iter().zip(&driven)) {
+        assert!(sign_of_difference(named, overrun, 1.0) < 1e-12);
+        assert!(sign_of_difference(named, driven, 1.0) > 1e-3);
+    }
 }
 
 fn gearbox(change: impl Fn(&mut Scenario)) -> Scenario {
@@ -142,27 +151,56 @@ fn the_lines_of_action_are_mirrored() {
     }
 }
 
+/// Three wheels, the middle one an idler.
+fn idler_train(teeth: [u32; 3], torque_nm: f64) -> Scenario {
+    let names = ["a", "b", "c"];
+    let coupled = [Coupled::Motor, Coupled::Nothing, Coupled::Brake];
+    let shafts = (0..3).map(|n| {
+        let mut shaft = GearboxShaft::new(names[n], 100.0, 5.0);
+        shaft.couples_to = coupled[n];
+        shaft
+    });
+    let wheels = (0..3).map(|n| ScenarioWheel::new(["z1", "z2", "z3"][n], names[n], 0.5, teeth[n], 20.0));
+    let bearings = names.iter().flat_map(|name| [Bearing::new(name, 0.0), Bearing::new(name, 1.0)]);
+    Scenario::of_shafts(
+        shafts.collect(),
+        wheels.collect(),
+        vec![ScenarioMesh::new(["z1", "z2"], 2.0), ScenarioMesh::new(["z2", "z3"], 2.0)],
+        bearings.collect(),
+        Operation::new(30.0, torque_nm),
+    )
+}
+
+// An idler is driven in its first mesh and drives in its second one.
+#[test]
+fn an_idler_has_its_own_tips_in_both_meshes() {
+    let mut train = idler_train([24, 35, 30], 10.0);
+    let idler = &mut train.wheels[1];
+    idler.flank_relief.amount_um = 12.0;
+    (idler.tip_chamfer_mm, idler.uniform_flank_reduction_mm) = (Some(0.1), 0.01);
+    idler.active_profile_shortening = 0.2;
+    assert_eq!(Scenario::from_toml(&train.to_toml()).unwrap(), train);
+    let stages = stages(&train).unwrap();
+    for (gears, idler) in stages.layout.gears.iter().zip([1, 0]) {
+        let other = 1 - idler;
+        assert_eq!([idler, other].map(|wheel| gears.flank_relief[wheel].amount_um), [12.0, 0.0]);
+        assert_eq!([idler, other].map(|wheel| gears.tip_chamfer_mm[wheel]), [Some(0.1), None]);
+        assert_eq!([idler, other].map(|wheel| gears.uniform_flank_reduction_mm[wheel]), [0.01, 0.0]);
+        assert_eq!([idler, other].map(|wheel| gears.active_profile_shortening[wheel]), [0.2, 0.1]);
+    }
+    // The same teeth with less metal: thinner by the reduction.
+    let thickness_mm = |mesh: usize| {
+        let teeth = &stages.pairs[mesh].teeth;
+        [&teeth.pinion_profile, &teeth.gear_profile].map(|profile| profile.y_mm[profile.len() / 2])
+    };
+    assert_eq!(thickness_mm(0)[1], thickness_mm(1)[0]);
+}
+
 // The teeth of an idler between two wheels that exchange their roles.
 #[test]
 fn an_idler_is_met_from_its_other_side() {
     let phase = |teeth: [u32; 3], torque_nm: f64| {
-        let names = ["a", "b", "c"];
-        let coupled = [Coupled::Motor, Coupled::Nothing, Coupled::Brake];
-        let shafts = (0..3).map(|n| {
-            let mut shaft = GearboxShaft::new(names[n], 100.0, 5.0);
-            shaft.couples_to = coupled[n];
-            shaft
-        });
-        let wheels = (0..3).map(|n| ScenarioWheel::new(["z1", "z2", "z3"][n], names[n], 0.5, teeth[n], 20.0));
-        let bearings = names.iter().flat_map(|name| [Bearing::new(name, 0.0), Bearing::new(name, 1.0)]);
-        let train = Scenario::of_shafts(
-            shafts.collect(),
-            wheels.collect(),
-            vec![ScenarioMesh::new(["z1", "z2"], 2.0), ScenarioMesh::new(["z2", "z3"], 2.0)],
-            bearings.collect(),
-            Operation::new(30.0, torque_nm),
-        );
-        stages(&train).unwrap().meshes[1].turning.first_pitch
+        stages(idler_train(teeth, torque_nm)).unwrap().meshes[1].turning.first_pitch
     };
     let (overrun, backwards) = (phase([24, 35, 30], -10.0), phase([30, 35, 24], 10.0));
     let whole = overrun + backwards;

@@ -3,7 +3,7 @@
 
 use crate::support::{REQUIRED, appended, assert_refused, gears, replaced};
 use meshtone::scenario::{
-    Damage, DestructionLine, Fault, FileProblem, MissingTooth, PartialFace, PitCircle, Profile,
+    Damage, DestructionLine, Fault, FileProblem, MissingTooth, Model, PartialFace, PitCircle, Profile,
     ProfileErrors, RootCrack, Scenario, ScenarioFiles, ThroughFace, ToothBreakage, ToothDestruction, Wear,
 };
 use meshtone::wheel::ErrorTable;
@@ -54,6 +54,46 @@ fn every_fault_is_read() {
         let scenario = Scenario::from_toml(&appended(&format!("[fault]\n{keys}"))).unwrap();
         assert_eq!(scenario.faults, [Fault::at_usual_place(damage)]);
     }
+}
+
+#[test]
+fn the_wheels_of_a_pair_may_have_tips_of_their_own() {
+    let text = gears(
+        "flank_relief = { length_mm = 2.0, amount_um = 10.0 }\ngear_flank_relief = { amount_um = 20.0 }\npinion_tip_chamfer_mm = 0.3",
+    );
+    let mut scenario = Scenario::from_toml(&text).unwrap();
+    let reliefs = |of: &Scenario| {
+        let wheels = of.wheels.iter();
+        wheels.map(|wheel| [wheel.flank_relief.length_mm, wheel.flank_relief.amount_um]).collect::<Vec<_>>()
+    };
+    let chamfers = |of: &Scenario| of.wheels.iter().map(|wheel| wheel.tip_chamfer_mm).collect::<Vec<_>>();
+    assert_eq!(reliefs(&scenario), [[2.0, 10.0], [2.0, 20.0]]);
+    assert_eq!(chamfers(&scenario), [Some(0.3), None]);
+    let written = scenario.to_toml();
+    assert_eq!(Scenario::from_toml(&written).unwrap(), scenario);
+    assert!(written.contains("\ngear_flank_relief") && !written.contains("\nflank_relief"), "{written}");
+    assert_eq!(scenario.number("gears.gear_flank_relief.amount_um"), Some(20.0));
+    scenario.model = Model::Published;
+    let ignored: Vec<_> = scenario.ignored_by_model().into_iter().map(|warning| warning.key).collect();
+    assert_eq!(ignored, ["gears.flank_relief", "gears.tip_chamfer_mm"]);
+
+    // Of wheels that are alike one key is written, and the numbers of either can be set.
+    let alike = Scenario::from_toml(&gears("tip_chamfer_mm = 0.5\ngear_tip_chamfer_mm = 0.5")).unwrap();
+    assert!(alike.to_toml().contains("\ntip_chamfer_mm = 0.5") && !alike.to_toml().contains("gear_tip"));
+    let own = [("gears.gear_tip_chamfer_mm", 0.2), ("gears.pinion_flank_relief.amount_um", 5.0)];
+    let changed = alike.with_numbers(&[own[0], ("gears.tip_chamfer_mm", 0.4), own[1]]).unwrap();
+    assert_eq!(chamfers(&changed), [Some(0.4), Some(0.2)]);
+    assert_eq!(reliefs(&changed), [[1.0, 5.0], [1.0, 0.0]]);
+    assert!(alike.with_number("gears.gear_module_mm", 3.0).is_err());
+
+    let of_gear = "tip_chamfer_mm = 0.5\ngear_tip_chamfer_mm = 4.0";
+    assert_refused(&gears(of_gear), "gears.gear_tip_chamfer_mm", 7, &["the module"]);
+    let of_both = "tip_chamfer_mm = 4.0";
+    assert_refused(&gears(of_both), "gears.tip_chamfer_mm", 6, &["the module"]);
+    let of_pinion = "pinion_flank_relief = { amount_um = -1.0 }";
+    assert_refused(&gears(of_pinion), "gears.pinion_flank_relief.amount_um", 6, &["0 µm or more"]);
+    let too_long = "gear_flank_relief = { amount_um = 1.0, length_mm = 7.0 }";
+    assert_refused(&gears(too_long), "gears.gear_flank_relief.length_mm", 6, &["2 modules"]);
 }
 
 /// No model heeds it: the published one always has the same, as its code.

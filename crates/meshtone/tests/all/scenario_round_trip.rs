@@ -18,24 +18,28 @@ fn gears() -> impl Strategy<Value = Gears> {
         FoundationCoefficients { l, m, p, q, rotation }
     });
     let wheels = (1.0..10.0, 17u32..80, 17u32..80, 1.0..100.0, 15.0..30.0);
-    let rest = (0usize..6, 0.0..0.05, 500usize..100_000, foundation);
-    let contact = (any::<bool>(), 0.01..1.9, 0.0..50.0, option::of(0.0..0.3), option::of(0.0..0.5));
+    let rest = (0usize..6, 500usize..100_000, foundation);
+    let of_wheel = || (any::<bool>(), 0.01..1.9, 0.0..50.0, option::of(0.0..0.3), 0.0..0.05);
+    let contact = (of_wheel(), option::weighted(0.25, of_wheel()), option::of(0.0..0.5));
     (wheels, rest, contact).prop_map(
-        |(wheels, (material, uniform_flank_reduction_mm, points_per_tooth, foundation), contact)| {
-            let (parabolic, length, amount_um, chamfer, backlash) = contact;
+        |(wheels, (material, points_per_tooth, foundation), (pinion, gear, backlash))| {
             let (module_mm, pinion_teeth, gear_teeth, face_width_mm, pressure_angle_deg) = wheels;
             let mut gears = Gears::new(module_mm, pinion_teeth, gear_teeth, face_width_mm);
             gears.pressure_angle_deg = pressure_angle_deg;
             gears.material = Material::ALL[material];
-            gears.uniform_flank_reduction_mm = uniform_flank_reduction_mm;
             gears.points_per_tooth = points_per_tooth;
             gears.foundation = foundation;
-            gears.flank_relief = FlankRelief {
-                shape: if parabolic { ReliefShape::Parabolic } else { ReliefShape::Linear },
-                length_mm: length * module_mm,
-                amount_um,
-            };
-            gears.tip_chamfer_mm = chamfer.map(|chamfer| chamfer * module_mm);
+            // Both wheels alike, or each with its own.
+            for (wheel, of_wheel) in [pinion, gear.unwrap_or(pinion)].into_iter().enumerate() {
+                let (parabolic, length, amount_um, chamfer, reduction_mm) = of_wheel;
+                gears.flank_relief[wheel] = FlankRelief {
+                    shape: if parabolic { ReliefShape::Parabolic } else { ReliefShape::Linear },
+                    length_mm: length * module_mm,
+                    amount_um,
+                };
+                gears.tip_chamfer_mm[wheel] = chamfer.map(|chamfer| chamfer * module_mm);
+                gears.uniform_flank_reduction_mm[wheel] = reduction_mm;
+            }
             gears.backlash_mm = backlash.map(|backlash| backlash * module_mm);
             gears
         },

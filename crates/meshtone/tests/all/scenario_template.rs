@@ -2,7 +2,8 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use meshtone::scenario::{
-    Damage, DestructionLine, GearPair, PitCircle, Scenario, template, template_kinds, template_of_all_keys,
+    Damage, DestructionLine, GearPair, PitCircle, Scenario, WheelName, template, template_kinds,
+    template_of_all_keys,
 };
 
 fn all() -> impl Iterator<Item = (&'static str, String)> {
@@ -88,8 +89,10 @@ fn keys_whose_default_follows_from_others_are_shown_as_well() {
         text.replace("# tip_chamfer_mm =", "tip_chamfer_mm =").replace("# backlash_mm =", "backlash_mm =");
     let default = Scenario::from_toml(&text).unwrap();
     let gears = Scenario::from_toml(&set).unwrap().gears();
-    assert_eq!((gears.tip_chamfer_mm, gears.backlash_mm), (Some(0.69), Some(0.1275)));
-    assert!((gears.chamfer_mm() - default.gears().chamfer_mm()).abs() < 1e-12);
+    assert_eq!((gears.tip_chamfer_mm, gears.backlash_mm), ([Some(0.69); 2], Some(0.1275)));
+    for wheel in WheelName::BOTH {
+        assert!((gears.chamfer_mm(wheel) - default.gears().chamfer_mm(wheel)).abs() < 1e-12);
+    }
     assert!((gears.normal_backlash_mm() - default.gears().normal_backlash_mm()).abs() < 1e-12);
 
     let mut set = text.clone();

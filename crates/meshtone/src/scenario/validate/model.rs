@@ -106,16 +106,13 @@ fn refuse_unknown_to_published(scenario: &Scenario) -> Check {
 /// centre line for a negative thickness.
 fn relief_leaves_tips(gears: &Gears) -> Check {
     let TipRelief { length_mm, depth_mm } = TipRelief::PUBLISHED;
-    let left_mm = gears.half_thickness_below_tip_mm(length_mm);
+    let left_mm = gears.half_thicknesses_below_tip_mm(length_mm).into_iter().fold(f64::INFINITY, f64::min);
+    // A pair has one reduction of both wheels.
+    let [reduction_mm, _] = gears.uniform_flank_reduction_mm;
     let problem = format!(
         "the published model thins all tips by {depth_mm} mm, which with gears.uniform_flank_reduction_mm must be less than the {left_mm:.4} mm that the \
          tooth is thick from its centre line, {length_mm} mm below the tip"
     );
-    require(
-        "gears.module_mm",
-        gears.module_mm,
-        depth_mm + gears.uniform_flank_reduction_mm < left_mm,
-        problem,
-    )
-    .map_err(|error| error.with_help("take a larger module, or another model"))
+    require("gears.module_mm", gears.module_mm, depth_mm + reduction_mm < left_mm, problem)
+        .map_err(|error| error.with_help("take a larger module, or another model"))
 }

@@ -104,7 +104,11 @@ pub fn text() -> String {
     for argument in arguments.iter().filter(in_section) {
         // What another key can stand in place of has a value all the same.
         let is_given = argument.key.required || argument.key.default.starts_with("required");
-        let none = if is_given || has_default_value(&argument.key) { "" } else { " | None" };
+        // Of tables of both wheels, none where each has its own.
+        let of_each = argument.key.kind == KeyKind::Table
+            && arguments.iter().any(|other| other.name == format!("pinion_{}", argument.name));
+        let is_there = is_given || has_default_value(&argument.key) && !of_each;
+        let none = if is_there { "" } else { " | None" };
         writeln!(text, "    {}: {}{none}", argument.name, attribute_type(&argument.key)).unwrap();
     }
     text.push_str("\n    def __init__(\n        self,\n        *,\n");

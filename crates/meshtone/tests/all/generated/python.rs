@@ -8,7 +8,9 @@ pub const HEAD: &str =
 const WIDTH: usize = 120;
 
 /// Classes of tables that are not called as their key.
-const TABLE_NAMES: [(&str, &str); 13] = [
+const TABLE_NAMES: [(&str, &str); 15] = [
+    ("pinion_flank_relief", "FlankRelief"),
+    ("gear_flank_relief", "FlankRelief"),
     ("pinion_shaft", "Shaft"),
     ("gear_shaft", "Shaft"),
     ("pinion_inertia", "WheelInertia"),
