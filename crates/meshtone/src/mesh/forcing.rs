@@ -74,6 +74,8 @@ pub(crate) struct CornerBlock {
     pub(crate) offset: Vec<f64>,
     pub(crate) near: Vec<f64>,
     pub(crate) far: Vec<f64>,
+    /// None where the mesh does not tilt.
+    pub(crate) place: Vec<f64>,
 }
 
 impl PairsBlock {
@@ -89,6 +91,9 @@ impl PairsBlock {
             of_corners.flat_map(|corner| [&mut corner.offset, &mut corner.near, &mut corner.far]);
         for values in self.stiffness.iter_mut().chain(&mut self.offset).chain(of_corners) {
             values.resize(samples, 0.0);
+        }
+        if mesh.tilts() {
+            self.corners.iter_mut().flatten().for_each(|corner| corner.place.resize(samples, 0.0));
         }
         self.sliding.resize_with(if mesh.has_friction() { springs } else { 0 }, Default::default);
         self.sliding.iter_mut().flatten().for_each(|values| values.resize(samples, 0.0));
@@ -528,6 +533,7 @@ impl TabulatedPairs {
                         far,
                         apart_m: *apart_m,
                         flanks: flanks.filter_map(|(tables, tooth)| Some(&tables.get(tooth)?[..])).collect(),
+                        place,
                         reading: mesh.corner_reading(slice, end, place),
                     }
                 })
@@ -579,6 +585,8 @@ struct CornerParts<'a> {
     apart_m: f64,
     /// (m) Deviations of both flanks, at the mesh's points of flanks.
     flanks: Vec<&'a [f64]>,
+    /// (base pitches) Where its end of the path is.
+    place: f64,
     reading: CornerReading,
 }
 
@@ -716,7 +724,7 @@ impl<'a> MeshForcing<'a> {
                     wobble[from..until].fill(wobble_m);
                 }
                 let Some(corners) = block.corners.get_mut(spring) else { continue };
-                for (end, CornerBlock { offset, near, far }) in corners.iter_mut().enumerate() {
+                for (end, CornerBlock { offset, near, far, place: strip }) in corners.iter_mut().enumerate() {
                     near[set[place]..from].fill(0.0);
                     far[set[place]..from].fill(0.0);
                     let Some(corner) = part.corners.as_ref().map(|corners| &corners[end]) else {
@@ -730,7 +738,12 @@ impl<'a> MeshForcing<'a> {
                     let outside = |point: &usize| corner.far[*point] > corner.near[*point];
                     for at in points.filter(outside) {
                         let alike_m: f64 = alike.iter().map(|(table, begin)| table[begin + at]).sum();
-                        offset[from + at - point] = corner.offset_m(at as f64) + alike_m + closer_m;
+                        let sample = from + at - point;
+                        offset[sample] = corner.offset_m(at as f64) + alike_m + closer_m;
+                        if self.mesh.tilts() {
+                            strip[sample] = self.mesh.corner_strip(slice, corner.place, at as f64);
+                            offset[sample] += strip[sample] * wobble_m;
+                        }
                     }
                 }
             }
@@ -821,12 +834,17 @@ impl<'a> MeshForcing<'a> {
                     places.iter().for_each(|at| wobble[at.sample] = parts.wobble_m);
                 }
                 for (end, corner) in slice.corners.iter().flatten().enumerate() {
-                    let CornerBlock { offset, near: nears, far: fars } = &mut block.corners[spring][end];
+                    let CornerBlock { offset, near: nears, far: fars, place: strip } =
+                        &mut block.corners[spring][end];
                     for at in &places {
                         let [near, far] = [corner.near, corner.far].map(|table| at.of(table, 0));
                         (nears[at.sample], fars[at.sample]) = (near, far);
                         if far > near {
                             offset[at.sample] = corner.offset_m(at.point) + at.alike_m + closer_m;
+                            if mesh.tilts() {
+                                strip[at.sample] = mesh.corner_strip(number, corner.place, at.point);
+                                offset[at.sample] += strip[at.sample] * parts.wobble_m;
+                            }
                         }
                     }
                 }

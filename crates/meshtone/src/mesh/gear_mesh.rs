@@ -166,7 +166,8 @@ pub struct PairTable {
     /// are those of corners there.
     pub corners: Vec<[CornerTable; 2]>,
     /// (-) Of faces that tilt and are no slices, where the middle of what touches of each state lies along the face, from −1 to 1, and half of its
-    /// width: that of an even strip with the same stiffness, centroid and moment of inertia. None where that is always the whole face.
+    /// width: that of an even strip with the same stiffness, centroid and moment of inertia. None where that is always the whole face, and of helical
+    /// teeth what their contact lines have on the path.
     pub strips: Vec<[f64; 2]>,
 }
 
@@ -203,6 +204,8 @@ pub(crate) struct MeshParameters {
     pub(crate) wobble: Option<[HelixWobble; 2]>,
     /// How they lie along it otherwise.
     pub(crate) face: FaceForm,
+    /// Whether the slope of its deflection along the face is to be a second unknown.
+    pub(crate) tilts: bool,
     /// (m) Face width.
     pub(crate) face_width_m: f64,
     /// Friction of the flanks; none of frictionless ones.
@@ -240,6 +243,7 @@ impl Mesh {
             closer_m,
             wobble,
             face,
+            tilts,
             face_width_m,
             friction,
         } = parameters;
@@ -274,6 +278,9 @@ impl Mesh {
                             let mut corners = along_path.corners(&positions, window);
                             corners.iter_mut().for_each(|corner| corner.separation_m += face.gap_m(slice));
                             table.corners.push(corners);
+                        }
+                        if tilts && face.slices() == 1 {
+                            table.strips = along_path.strips(&positions, window);
                         }
                         along_path.over_face(&positions, window)
                     }
@@ -381,6 +388,18 @@ impl Mesh {
         of_state.unwrap_or_else(|| self.strip_of_slice(number / self.points()))
     }
 
+    /// (-) Where along the face an end of the path lies on a pair's contact line, from −1 to 1: there its corner touches.
+    ///
+    /// # Arguments
+    /// * `slice` - within which it is looked for
+    /// * `end` - (base pitches) where the end is
+    /// * `point` - of the pair's tables
+    pub(super) fn corner_strip(&self, slice: usize, end: f64, point: f64) -> f64 {
+        let [middle, half_width] = self.strip_of_slice(slice);
+        let position = (point - self.points_before as f64) / self.points_per_pitch as f64;
+        (2.0 * (end - position) / self.face.overlap()).clamp(middle - half_width, middle + half_width)
+    }
+
     /// Whether that differs from state to state.
     pub(super) fn has_strips(&self) -> bool {
         self.classes.iter().any(|class| !class.strips.is_empty())
@@ -413,13 +432,18 @@ impl Mesh {
         let Some(wheels) = &self.wobble else { return 0.0 };
         let teeth: [usize; 2] = self.sequence.teeth(pair).into();
         let slope: f64 = wheels.iter().zip(teeth).map(|(wheel, tooth)| wheel.slope_of(tooth)).sum();
-        let yields = if self.closer_at_end_m.is_some() { 0.0 } else { self.along_face.tilt_product };
+        let yields = if self.tilts() { 0.0 } else { self.along_face.tilt_product };
         slope * self.half_face_m / (1.0 + yields)
+    }
+
+    /// Whether the slope of its deflection along the face is a second unknown.
+    pub(crate) fn tilts(&self) -> bool {
+        self.closer_at_end_m.is_some()
     }
 
     /// (m) By how much closer that brings a slice of a mesh with one unknown; where the tilt is another, the law knows.
     pub(super) fn slice_closer_m(&self, slice: usize, wobble_m: f64) -> f64 {
-        if self.closer_at_end_m.is_some() { 0.0 } else { wobble_m * self.strip_of_slice(slice)[0] }
+        if self.tilts() { 0.0 } else { wobble_m * self.strip_of_slice(slice)[0] }
     }
 
     /// Whether a slope turns with its wheels.
@@ -429,7 +453,7 @@ impl Mesh {
 
     /// Whether each pair leans in its own way, and the law is to know it.
     pub(crate) fn leans_with_pairs(&self) -> bool {
-        self.wobbles() && self.closer_at_end_m.is_some()
+        self.wobbles() && self.tilts()
     }
 
     /// Whether its flanks rub.

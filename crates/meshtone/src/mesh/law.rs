@@ -99,6 +99,8 @@ pub(crate) struct CornerAt {
     /// (√m) The edges of the line, as the v at which the corner reaches them: that nearer to the path, and the farther one.
     pub(crate) near: f64,
     pub(crate) far: f64,
+    /// (-) Of a face that tilts, where the end of the path lies along it, from −1 to 1.
+    pub(crate) place: f64,
 }
 
 impl CornerAt {
@@ -470,6 +472,7 @@ impl SpringSamples {
                         offset_m: corner.offset[sample],
                         near: corner.near[sample],
                         far: corner.far[sample],
+                        place: corner.place.get(sample).copied().unwrap_or(0.0),
                     };
                     if at.can_touch() {
                         let class = block.class_at(spring / slices, sample);
@@ -643,6 +646,13 @@ impl MeshLaw {
             let slopes = [carries, carries * place, carries * place * place + spread];
             let sliding = rubs.then(|| [springs.sliding[0][n], springs.sliding[1][n]]);
             sums.add([force, moment], slopes, sliding);
+        }
+        for corner in springs.corners {
+            // It reaches so little of the face that its deflection is that of the place where the path ends.
+            let (place, lean_m) = (corner.place, tilt_m + springs.closer_m);
+            let [force, slope] = corner.force_and_slope(springs.laws, deflection_m + place * lean_m);
+            let sliding = rubs.then(|| springs.sliding_of_laws[corner.law as usize]);
+            sums.add([force, place * force], [slope, place * slope, place * place * slope], sliding);
         }
         let back_m = self.back_touches_at_m() - deflection_m;
         if back_m > 0.0 {

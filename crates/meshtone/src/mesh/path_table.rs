@@ -304,6 +304,21 @@ impl AlongPath {
         positions.iter().map(state).collect()
     }
 
+    /// Where what contact lines of the whole face have on the path lies along it, from −1 to 1: its middle and half of its width, those of an even
+    /// strip with the same stiffness, centroid and moment of inertia.
+    ///
+    /// # Arguments
+    /// * `positions`, `window` - as of [`Self::over_face`]
+    pub(super) fn strips(&self, positions: &[f64], window: Window) -> Vec<[f64; 2]> {
+        let mean = self.mean(positions, window, |position| position);
+        let square = self.mean(positions, window, |position| position * position);
+        let strip = |((position, mean), square): ((&f64, f64), f64)| {
+            let half_width = (3.0 * (square - mean * mean)).max(0.0).sqrt();
+            [mean - position, half_width * window.overlap.signum()].map(|along| 2.0 * along / window.overlap)
+        };
+        positions.iter().zip(mean).zip(square).map(strip).collect()
+    }
+
     /// What the same contact lines have outside the path: that before its start, and that beyond its end.
     ///
     /// # Arguments

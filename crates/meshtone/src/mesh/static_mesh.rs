@@ -91,8 +91,9 @@ impl Mesh {
                 pair_force_n[(pair - first_pair) as usize][column] += carried;
             }
             for (pair, corner) in of_corner.iter().zip(&corners) {
+                let lean_m = closer_m.map_or(0.0, |closer_m| tilt_m + closer_m);
                 pair_force_n[(pair - first_pair) as usize][column] +=
-                    corner.force_and_slope(&laws, deflection)[0];
+                    corner.force_and_slope(&laws, deflection + corner.place * lean_m)[0];
             }
         }
         StaticMesh { deflection_m, first_pair, pair_force_n }
@@ -110,6 +111,7 @@ impl Mesh {
                     offset_m: -table.separation_m,
                     near: table.reach.signed_root_at(table.near[at]),
                     far: table.reach.signed_root_at(table.far[at]),
+                    place: self.corner_strip(slice, table.place, at as f64),
                 };
                 corners.extend(corner.can_touch().then_some((pair, corner)));
             }

@@ -213,6 +213,7 @@ fn a_planet_s_mesh_carries_its_load_at_rest() {
             closer_m: 0.0,
             wobble: None,
             face: FaceForm::Spur,
+            tilts: false,
             face_width_m: 0.0381,
             friction: Some(Friction {
                 coefficient: 0.05,

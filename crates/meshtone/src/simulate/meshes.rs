@@ -67,13 +67,12 @@ pub(super) fn meshes(
         let closer_m = pair.closer_um() * 1e-6;
         let is_uneven = gears.is_crowned() || pair.damaged.iter().any(DamagedTooth::varies_over_face);
         let unevenness = mesh.unevenness_of(load.lean_m + closer_m, pair.static_force_n);
-        // Helical teeth have one unknown still.
-        let tilts = !gears.is_helical()
-            && (unevenness > MOST_UNEVENNESS
-                || is_uneven && load.tilt_product > MOST_TILT_PRODUCT
-                || mesh.loses_a_part()
-                || mesh.wobbles());
-        if !tilts && closer_m != 0.0 && (mesh.slices() > 1 || gears.is_helical()) {
+        let tilts = unevenness > MOST_UNEVENNESS
+            || is_uneven && load.tilt_product > MOST_TILT_PRODUCT
+            || mesh.loses_a_part()
+            || mesh.wobbles();
+        let leans_in_slices = !tilts && closer_m != 0.0 && (mesh.slices() > 1 || gears.is_helical());
+        if leans_in_slices || tilts && gears.is_helical() {
             mesh = mesh_of((number, pair), Some((load, tilts)))?;
         }
         if tilts {
@@ -190,7 +189,7 @@ impl MeshOf<'_> {
         }
         let width_m = gears.face_width_mm * 1e-3;
         // While the whole face bears, wheels whose tilt is no unknown yield to a part of what closes their flanks.
-        let one_unknown = self.along_face.filter(|(_, tilts)| !tilts);
+        let one_unknown = self.along_face.filter(|_| !self.tilts());
         let closer_m = one_unknown.map_or(0.0, |(load, _)| closer_um * 1e-6 / (1.0 + load.tilt_product));
         let slices = if self.gap_varies_along_face() { gears.slices as usize } else { 1 };
         let overlap = self.sense * gears.hand.sign() * gears.overlap_ratio();
@@ -217,6 +216,7 @@ impl MeshOf<'_> {
             closer_m,
             wobble: self.wobbles().then_some(self.pair.helix_wobble),
             face,
+            tilts: self.tilts(),
             face_width_m: width_m,
             friction: self.friction(),
         };
@@ -250,6 +250,11 @@ impl MeshOf<'_> {
         is_pressed && self.pair.helix_wobble.iter().any(|wheel| wheel.slope != 0.0)
     }
 
+    /// Whether its tilt is known to be an unknown.
+    fn tilts(&self) -> bool {
+        self.along_face.is_some_and(|(_, tilts)| tilts)
+    }
+
     /// Friction of the flanks; none of frictionless ones.
     fn friction(&self) -> Option<Friction> {
         let teeth = &self.pair.teeth;
@@ -265,13 +270,12 @@ impl MeshOf<'_> {
         })
     }
 
-    /// Whether the face is cut into slices, since the gap between two flanks differs along it. Spur teeth that tilt, or have lost a part of
+    /// Whether the face is cut into slices, since the gap between two flanks differs along it. Teeth that tilt, and spur teeth that have lost a part of
     /// their face, need none: see [`MeshLaw`](crate::mesh::MeshLaw) and [`Pairs`].
     fn gap_varies_along_face(&self) -> bool {
         let gears = self.gears;
         let varies_along_contact_lines = || {
-            self.along_face.is_some()
-                || self.wobbles()
+            !self.tilts() && (self.along_face.is_some() || self.wobbles())
                 || gears.is_relieved()
                 || self.pair.damaged.iter().any(DamagedTooth::varies_over_face)
         };

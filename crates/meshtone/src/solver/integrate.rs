@@ -160,6 +160,8 @@ pub enum SteppedAlone {
     RollingBearings,
     /// The face is cut into slices, each of which is a spring.
     SlicedFace,
+    /// The deflection of helical teeth has a slope along the face.
+    TiltedHelical,
     /// A slope of the flanks along the face turns with a wheel.
     Wobble,
     /// The flanks rub.
@@ -184,6 +186,8 @@ impl SteppedAlone {
             Some(Self::RollingBearings)
         } else if meshes.clone().any(|mesh| mesh.slices() > 1) {
             Some(Self::SlicedFace)
+        } else if meshes.clone().any(|mesh| mesh.has_corners() && mesh.tilts()) {
+            Some(Self::TiltedHelical)
         } else if meshes.clone().any(Mesh::wobbles) {
             Some(Self::Wobble)
         } else if meshes.clone().any(Mesh::has_friction) {
@@ -206,6 +210,7 @@ impl fmt::Display for SteppedAlone {
             Self::GyroscopicMoments => formatter.write_str("gyroscopic moments shift its modes"),
             Self::RollingBearings => formatter.write_str("it has rolling bearings"),
             Self::SlicedFace => formatter.write_str("its face is cut into slices"),
+            Self::TiltedHelical => formatter.write_str("its helical teeth bear unevenly along the face"),
             Self::Wobble => formatter.write_str("a helix slope turns with its wheel"),
             Self::Friction => formatter.write_str("its flanks rub"),
             Self::ManyPairs => write!(formatter, "more than {MOST_PAIRS} pairs of its teeth overlap"),

@@ -85,6 +85,8 @@ struct Stretch<'a> {
     edges: [f64; 2],
     /// (m) What the pair adds to the deflection.
     offset_m: f64,
+    /// (m) Where its end of the path lies along the face; 0 of a mesh with one unknown.
+    z_m: f64,
 }
 
 impl Stretch<'_> {
@@ -257,7 +259,11 @@ impl<'a> DenseMesh<'a> {
                 at(wheel, 0.0) + lead * change
             };
             let offset_m = WheelName::BOTH.map(deviation).iter().sum::<f64>() - corner.separation_m;
-            let mut stretch = Stretch { corner, edges: [0.0; 2], offset_m };
+            // Within its slice.
+            let ends = [slice, slice + 1].map(|edge| edge as f64 / windows - 0.5);
+            let along = ((corner.place - position) / mesh.face.overlap()).clamp(ends[0], ends[1]);
+            let z_m = mesh.two_unknowns().map_or(0.0, |[width_m, _]| width_m * along);
+            let mut stretch = Stretch { corner, edges: [0.0; 2], offset_m, z_m };
             let shift = if end == 0 { -ahead_pitches } else { ahead_pitches };
             stretch.edges = [&corner.near, &corner.far].map(|table| read(table, shift, &stretch));
             // The damping's lead makes the penetration deeper.
@@ -375,6 +381,9 @@ impl Load<'_> {
                 }
                 continue;
             };
+            if *stiffness == 0.0 {
+                continue;
+            }
             let slope = deflection.y + closer;
             let at_0 = deflection.x + offset;
             let (mut from, mut until) = (z_m - width_m / 2.0, z_m + width_m / 2.0);
@@ -390,9 +399,10 @@ impl Load<'_> {
             add(slopes * Vector2::new(at_0, slope), slopes);
         }
         for corner in &self.corners {
-            // Teeth with corners have one unknown.
-            let [force, slope] = corner.force_and_slope(deflection.x);
-            add(Vector2::new(force, 0.0), Matrix2::new(slope, 0.0, 0.0, 0.0));
+            let z_m = corner.z_m;
+            let lean = self.closer.map_or(0.0, |closer| deflection.y + closer);
+            let [force, slope] = corner.force_and_slope(deflection.x + z_m * lean);
+            add(Vector2::new(1.0, z_m) * force, Matrix2::new(1.0, z_m, z_m, z_m * z_m) * slope);
         }
         if let Some([stiffness, backlash_m]) = self.back.filter(|[_, backlash]| deflection.x + backlash < 0.0)
         {
