@@ -61,7 +61,8 @@ pub struct PairsBlock {
     /// (-) Of each spring, where the middle of what touches of its face lies along it, from −1 to 1, and half of its width, of any value where there is no
     /// pair; none where they are the same throughout.
     pub(crate) strips: Vec<[Vec<f64>; 2]>,
-    /// (m) Of each spring, [`Mesh::wobble_m`] of its pair, of any value where there is none; none where no slope turns, or the tilt is no unknown.
+    /// (m) Of each spring, [`Mesh::wobble_m`] of its pair with what its deviations add, of any value where there is none; none where no slope turns and no
+    /// contact line tilts, or the tilt is no unknown.
     pub(crate) wobble: Vec<Vec<f64>>,
     /// (-, m) Of each spring, friction across the line of action per force along it and its moment about the pitch point, of any value where
     /// there is no pair; none without friction.
@@ -399,6 +400,8 @@ struct TabulatedPairs {
     pinion_m: Vec<Vec<f64>>,
     /// (m) Deviation by tooth, and of spur teeth `−S` of sound pairs: all that most pairs need beside the pinion's.
     gear_m: Vec<Vec<f64>>,
+    /// (m) Of helical teeth whose undivided face tilts, by how much more they deviate at the end of the face at positive z than midway, by wheel and tooth.
+    slopes_m: [Vec<Vec<f64>>; 2],
     /// (m) Of teeth with corners or slices, what all places of a tooth deviate by alike, by wheel and tooth; none where all turn true.
     alike_m: Option<[Vec<Vec<f64>>; 2]>,
     /// (m) Of teeth with corners, deviations by wheel and tooth at single places of the flanks.
@@ -448,10 +451,11 @@ impl TabulatedPairs {
         let sound = &mesh.classes[SOUND].states;
         let is_whole = mesh.face == FaceForm::Spur;
         let teeth = |wheel: WheelName| vec![vec![0.0; mesh.points()]; mesh.sequence.teeth_of(wheel)];
-        let tabulate = |wheel: WheelName| -> Vec<Vec<f64>> {
+        let tabulate = |wheel: WheelName| -> [Vec<Vec<f64>>; 2] {
             let mut tables = flanks[wheel as usize].tabulate_at(mesh.flank_positions());
+            let mut slopes = Vec::new();
             if !is_whole {
-                tables = mesh.averaged_along_face(&tables);
+                [tables, slopes] = mesh.along_face(&tables);
             } else {
                 if tables.is_empty() {
                     tables = teeth(wheel);
@@ -464,9 +468,10 @@ impl TabulatedPairs {
                     tables.iter_mut().for_each(|table| table.iter_mut().zip(sound).for_each(apart));
                 }
             }
-            tables.iter_mut().for_each(|table| add_lead(table, lead));
-            tables
+            tables.iter_mut().chain(&mut slopes).for_each(|table| add_lead(table, lead));
+            [tables, slopes]
         };
+        let [[pinion_m, pinion_slopes_m], [gear_m, gear_slopes_m]] = WheelName::BOTH.map(tabulate);
         let alike = |eccentricity: &Eccentricity| {
             WheelName::BOTH.map(|wheel| {
                 let mut tables = teeth(wheel);
@@ -501,8 +506,9 @@ impl TabulatedPairs {
                 .map(|class| class.states.iter().map(|state| state.stiffness_n_per_m).collect())
                 .collect(),
             further_apart_m: mesh.classes.iter().map(further_apart).collect(),
-            pinion_m: tabulate(WheelName::Pinion),
-            gear_m: tabulate(WheelName::Gear),
+            pinion_m,
+            gear_m,
+            slopes_m: [pinion_slopes_m, gear_slopes_m],
             alike_m: eccentricity.filter(|_| !is_whole).map(alike),
             flanks_m: WheelName::BOTH.map(at_places),
             corners: mesh.classes.iter().map(of_corners).collect(),
@@ -547,6 +553,9 @@ impl TabulatedPairs {
         PairParts {
             class,
             wobble_m: mesh.wobble_m(pair),
+            slopes: (self.slopes_m.iter().zip(teeth))
+                .filter_map(|(tables, tooth)| Some(&tables.get(tooth)?[..]))
+                .collect(),
             alike: alike.collect(),
             slices: (0..mesh.slices()).map(slice).collect(),
         }
@@ -561,6 +570,8 @@ struct PairParts<'a> {
     class: usize,
     /// (m) As of [`Mesh::wobble_m`].
     wobble_m: f64,
+    /// (m) What its deviations add to that, at the pair's points.
+    slopes: Vec<&'a [f64]>,
     /// What all slices add to their offset.
     alike: Vec<FromPoint<'a>>,
     slices: Vec<SliceParts<'a>>,
@@ -680,7 +691,7 @@ impl<'a> MeshForcing<'a> {
         for pair in pairs {
             let Some(Part { from, until, point }) = self.part(pair, first, samples) else { continue };
             let place = pair.rem_euclid(at_once as i64) as usize;
-            let PairParts { class, wobble_m, alike, slices: parts } = tables.of_pair(self.mesh, pair);
+            let PairParts { class, wobble_m, slopes, alike, slices: parts } = tables.of_pair(self.mesh, pair);
             if let Some(classes) = block.classes.get_mut(place) {
                 classes.push((from, class));
             }
@@ -721,7 +732,11 @@ impl<'a> MeshForcing<'a> {
                     offsets.iter_mut().for_each(|offset| *offset += closer_m);
                 }
                 if let Some(wobble) = block.wobble.get_mut(spring) {
-                    wobble[from..until].fill(wobble_m);
+                    let wobble = &mut wobble[from..until];
+                    wobble.fill(wobble_m);
+                    for slope in &slopes {
+                        wobble.iter_mut().zip(&slope[point..]).for_each(|(wobble, slope)| *wobble += slope);
+                    }
                 }
                 let Some(corners) = block.corners.get_mut(spring) else { continue };
                 for (end, CornerBlock { offset, near, far, place: strip }) in corners.iter_mut().enumerate() {
@@ -831,7 +846,10 @@ impl<'a> MeshForcing<'a> {
                 let spring = first_spring + number;
                 let closer_m = mesh.slice_closer_m(number, parts.wobble_m);
                 if let Some(wobble) = block.wobble.get_mut(spring) {
-                    places.iter().for_each(|at| wobble[at.sample] = parts.wobble_m);
+                    for at in &places {
+                        let slope: f64 = parts.slopes.iter().map(|table| at.of(table, 0)).sum();
+                        wobble[at.sample] = parts.wobble_m + slope;
+                    }
                 }
                 for (end, corner) in slice.corners.iter().flatten().enumerate() {
                     let CornerBlock { offset, near: nears, far: fars, place: strip } =

@@ -453,7 +453,7 @@ impl Mesh {
 
     /// Whether each pair leans in its own way, and the law is to know it.
     pub(crate) fn leans_with_pairs(&self) -> bool {
-        self.wobbles() && self.tilts()
+        self.tilts() && (self.wobbles() || matches!(self.face, FaceForm::Helical { .. }))
     }
 
     /// Whether its flanks rub.
@@ -525,27 +525,46 @@ impl Mesh {
         }
     }
 
-    /// Tables over the points of flanks, of helical teeth alike along the face as means along what their contact lines have on the path.
+    /// Tables over the points of flanks as the springs of a whole face take them, and by how much more each deviates at the end of the face at positive z
+    /// than midway.
+    ///
+    /// Of helical teeth alike along the face a deviation is the mean along what their contact lines have on the path; where the face tilts it is the straight
+    /// line along the face with that mean and that first moment, read off midway. All others are read off where they are, and have no slopes.
     ///
     /// # Arguments
     /// * `tables` - a quantity of each tooth, at the mesh's points of flanks
-    pub(super) fn averaged_along_face(&self, tables: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    pub(super) fn along_face(&self, tables: &[Vec<f64>]) -> [Vec<Vec<f64>>; 2] {
         // Slices are so narrow that they are read off at their middle.
-        let (FaceForm::Helical { .. }, Some(along_path)) = (&self.face, &self.along_path) else {
-            return tables.to_vec();
+        let (FaceForm::Helical { overlap }, Some(along_path)) = (&self.face, &self.along_path) else {
+            return [tables.to_vec(), Vec::new()];
         };
         let positions: Vec<f64> = self.flank_positions().collect();
         let window = self.face.window(0);
-        let mean = |table: &Vec<f64>| {
-            along_path.mean(&positions, window, |position| {
-                let place = (position - positions[0]) * self.points_per_pitch as f64;
-                let place = place.clamp(0.0, (table.len() - 1) as f64);
-                let (point, part) = (place as usize, place - place.floor());
-                let next = table[(point + 1).min(table.len() - 1)];
-                table[point] + part * (next - table[point])
-            })
+        let mean = |of: &dyn Fn(f64) -> f64| along_path.mean(&positions, window, of);
+        let at = |table: &[f64], position: f64| {
+            let place = (position - positions[0]) * self.points_per_pitch as f64;
+            let place = place.clamp(0.0, (table.len() - 1) as f64);
+            let (point, part) = (place as usize, place - place.floor());
+            let next = table[(point + 1).min(table.len() - 1)];
+            table[point] + part * (next - table[point])
         };
-        tables.iter().map(mean).collect()
+        if !self.tilts() {
+            return [tables.iter().map(|table| mean(&|position| at(table, position))).collect(), Vec::new()];
+        }
+        let [first, second] = [mean(&|position| position), mean(&|position| position * position)];
+        let lines = tables.iter().map(|table| {
+            let means = mean(&|position| at(table, position));
+            let moments = mean(&|position| at(table, position) * position);
+            let line = |n: usize| {
+                let spread = second[n] - first[n] * first[n];
+                let covariance = moments[n] - means[n] * first[n];
+                // Of hardly anything on the path rounding would be the slope.
+                let per_pitch = if spread > LEAST_SPREAD { covariance / spread } else { 0.0 };
+                [means[n] - (first[n] - positions[n]) * per_pitch, per_pitch * overlap / 2.0]
+            };
+            (0..positions.len()).map(line).map(|[midway, slope]| (midway, slope)).unzip()
+        });
+        <[Vec<Vec<f64>>; 2]>::from(lines.unzip())
     }
 
     /// Number of points of a pair.
@@ -722,6 +741,9 @@ fn deflection_of_springs<'a>(
 fn nearest_m<'a>(states: impl Iterator<Item = &'a PairState>) -> f64 {
     states.map(|state| state.separation_m).fold(f64::INFINITY, f64::min)
 }
+
+/// (base pitches squared) Variance of the places that a contact line has on the path, below which a deviation has no slope along it.
+const LEAST_SPREAD: f64 = 1e-8;
 
 /// (m) How much farther apart than the nearest a pair is counted as touching in the mesh's stiffness.
 const TOUCHING_M: f64 = 1e-9;
