@@ -154,7 +154,7 @@ fn numbers_of(data_set: &Dataset) -> Result<Result<Numbers, String>, Problem> {
     let kind = match data_set.datatype().map_err(Problem::broken)? {
         Datatype::FixedPoint { size, byte_order, layout } => {
             let class = if layout.signed { "int" } else { "uint" };
-            match NumberKind::of(class, 8 * size) {
+            match NumberKind::of(class, size.saturating_mul(8)) {
                 Some(kind) => Some((kind, byte_order)),
                 None => return Ok(Err(format!("integers of {size} bytes"))),
             }
@@ -162,7 +162,7 @@ fn numbers_of(data_set: &Dataset) -> Result<Result<Numbers, String>, Problem> {
         Datatype::FloatingPoint { size, byte_order, layout }
             if size != 2 || layout.exponent_size == HALF_EXPONENT =>
         {
-            NumberKind::of("float", 8 * size).map(|kind| (kind, byte_order))
+            NumberKind::of("float", size.saturating_mul(8)).map(|kind| (kind, byte_order))
         }
         _ => None,
     };

@@ -118,7 +118,7 @@ impl<S, V: KeyValue> Cell<S> for Field<S, V> {
     }
 }
 
-/// A value of a part of a section, or that several parts have in common: it is read into all of them, and must be the same in all.
+/// A value of a part of a section, or that several parts have in common: it is read into all of them, and written where `get` gives any.
 struct PartsCell<P, G, M> {
     get: G,
     get_mut: M,

@@ -385,7 +385,7 @@ struct MeshForcing<'a> {
     reading: Reading,
     /// The pairs at every point, while motor and brake are steady, and always where the teeth are helical or in slices.
     tables: Option<TabulatedPairs>,
-    /// (m) Offset of each spring at the two samples before, with the pair's number, where motor or brake is not steady.
+    /// (m) Offset of each spring at the two samples before, with the pair's number, where motor or brake is not steady; then the slope of each.
     before: Vec<(i64, [f64; 2])>,
 }
 
@@ -650,7 +650,7 @@ impl<'a> MeshForcing<'a> {
         let tables = lead_of_points.map(|lead| {
             TabulatedPairs::new(mesh, [&pinion, &gear], eccentricity.as_ref(), [lead, of_corners])
         });
-        let before = vec![(i64::MIN, [0.0; 2]); mesh.springs()];
+        let before = vec![(i64::MIN, [0.0; 2]); 2 * mesh.springs()];
         Self { mesh, pinion, gear, eccentricity, lead, reading, tables, before }
     }
 
@@ -756,7 +756,7 @@ impl<'a> MeshForcing<'a> {
                         let sample = from + at - point;
                         offset[sample] = corner.offset_m(at as f64) + alike_m + closer_m;
                         if self.mesh.tilts() {
-                            strip[sample] = self.mesh.corner_strip(slice, corner.place, at as f64);
+                            strip[sample] = self.mesh.corner_strip(slice, end, corner.place, at as f64);
                             offset[sample] += strip[sample] * wobble_m;
                         }
                     }
@@ -848,7 +848,9 @@ impl<'a> MeshForcing<'a> {
                 if let Some(wobble) = block.wobble.get_mut(spring) {
                     for at in &places {
                         let slope: f64 = parts.slopes.iter().map(|table| at.of(table, 0)).sum();
-                        wobble[at.sample] = parts.wobble_m + slope;
+                        let before = &mut before[mesh.springs() + spring];
+                        wobble[at.sample] =
+                            parts.wobble_m + if is_even { slope } else { self.leading(slope, pair, before) };
                     }
                 }
                 for (end, corner) in slice.corners.iter().flatten().enumerate() {
@@ -860,7 +862,7 @@ impl<'a> MeshForcing<'a> {
                         if far > near {
                             offset[at.sample] = corner.offset_m(at.point) + at.alike_m + closer_m;
                             if mesh.tilts() {
-                                strip[at.sample] = mesh.corner_strip(number, corner.place, at.point);
+                                strip[at.sample] = mesh.corner_strip(number, end, corner.place, at.point);
                                 offset[at.sample] += strip[at.sample] * parts.wobble_m;
                             }
                         }

@@ -388,16 +388,23 @@ impl Mesh {
         of_state.unwrap_or_else(|| self.strip_of_slice(number / self.points()))
     }
 
-    /// (-) Where along the face an end of the path lies on a pair's contact line, from −1 to 1: there its corner touches.
+    /// (-) Where along the face a corner touches, from −1 to 1: where the path ends on a pair's contact line, and of a slice, over which a corner may
+    /// reach, midway along what lies outside the path.
     ///
     /// # Arguments
-    /// * `slice` - within which it is looked for
-    /// * `end` - (base pitches) where the end is
+    /// * `slice`, `end` - of which slice, and at which end of the path
+    /// * `place` - (base pitches) where the end is
     /// * `point` - of the pair's tables
-    pub(super) fn corner_strip(&self, slice: usize, end: f64, point: f64) -> f64 {
+    pub(super) fn corner_strip(&self, slice: usize, end: usize, place: f64, point: f64) -> f64 {
         let [middle, half_width] = self.strip_of_slice(slice);
         let position = (point - self.points_before as f64) / self.points_per_pitch as f64;
-        (2.0 * (end - position) / self.face.overlap()).clamp(middle - half_width, middle + half_width)
+        let along = 2.0 * (place - position) / self.face.overlap();
+        let along = along.clamp(middle - half_width, middle + half_width);
+        if self.slices() == 1 {
+            return along;
+        }
+        let outwards = if end == 0 { -self.face.overlap() } else { self.face.overlap() };
+        (along + middle + half_width.copysign(outwards)) / 2.0
     }
 
     /// Whether that differs from state to state.

@@ -648,7 +648,7 @@ impl MeshLaw {
             sums.add([force, moment], slopes, sliding);
         }
         for corner in springs.corners {
-            // It reaches so little of the face that its deflection is that of the place where the path ends.
+            // It reaches so little of the face, or of a slice, that its deflection is that of the place where the path ends.
             let (place, lean_m) = (corner.place, tilt_m + springs.closer_m);
             let [force, slope] = corner.force_and_slope(springs.laws, deflection_m + place * lean_m);
             let sliding = rubs.then(|| springs.sliding_of_laws[corner.law as usize]);

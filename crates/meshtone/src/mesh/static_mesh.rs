@@ -111,7 +111,7 @@ impl Mesh {
                     offset_m: -table.separation_m,
                     near: table.reach.signed_root_at(table.near[at]),
                     far: table.reach.signed_root_at(table.far[at]),
-                    place: self.corner_strip(slice, table.place, at as f64),
+                    place: self.corner_strip(slice, end, table.place, at as f64),
                 };
                 corners.extend(corner.can_touch().then_some((pair, corner)));
             }

@@ -70,8 +70,10 @@ impl NumberedText {
                 continue;
             };
             let is_whole = number.whole && value.fract() == 0.0;
-            let written = if is_whole { Value::Integer(value as i64) } else { Value::Float(value) };
-            changes.insert(at.start, (at.clone(), written.to_string()));
+            // Not −0, which is no count.
+            let written =
+                if is_whole { format!("{:.0}", value + 0.0) } else { Value::Float(value).to_string() };
+            changes.insert(at.start, (at.clone(), written));
         }
         let mut text = self.text.clone();
         // From the end on, so that what stands before keeps its place.
@@ -163,7 +165,10 @@ pub fn names_or_numbers(names: &[Option<String>]) -> Vec<String> {
 /// The error of a number at a key that a scenario does not have.
 fn no_such_number(key: &str, value: f64) -> Result<(), ScenarioError> {
     Err(ScenarioError::new(key, format!("{value}"), "the scenario has no number at this key")
-        .with_help("`meshtone init KIND` prints every key of a kind of fault"))
+        .with_help(
+            "`meshtone init KIND` prints every key of a kind of fault; of a value that both wheels of a pair may have apart there is one key \
+             where they are alike, and one of each where they differ",
+        ))
 }
 
 /// A scenario in which numbers are set many times.

@@ -48,7 +48,7 @@ pub struct ScenarioWheel {
     pub inertia: WheelInertia,
     /// Unbalance. Default none.
     pub unbalance: Unbalance,
-    /// (mm) Eccentricity of its seat, beside its run-out. Default 0. Mates have the same.
+    /// (mm) Eccentricity of its seat, beside its run-out. Default 0.
     pub eccentricity_mm: f64,
     /// Grade of DIN 3961 of its deviations, 1 (best) to 12; 0 for ideal teeth. Default 0.
     pub din_grade: u8,

@@ -89,6 +89,9 @@ const MOST_UNEVENNESS: f64 = 0.2;
 /// (-) χ above which it is one where the gap varies along the face.
 const MOST_TILT_PRODUCT: f64 = 0.1;
 
+/// (base pitches) Overlap above which a helical face that tilts is not divided: a corner, which reaches 0.05 base pitches at 10 µm, touches in one place of it.
+const LEAST_UNDIVIDED: f64 = 0.5;
+
 /// How each mesh bears along its face at rest: by the lean of the shafts under the nominal load, misalignment, slopes of the flanks, crowning and
 /// end relief. None without a load, or where flanks may pull.
 ///
@@ -275,7 +278,8 @@ impl MeshOf<'_> {
     fn gap_varies_along_face(&self) -> bool {
         let gears = self.gears;
         let varies_along_contact_lines = || {
-            !self.tilts() && (self.along_face.is_some() || self.wobbles())
+            let is_steep = gears.overlap_ratio() > LEAST_UNDIVIDED;
+            !(self.tilts() && is_steep) && (self.along_face.is_some() || self.wobbles())
                 || gears.is_relieved()
                 || self.pair.damaged.iter().any(DamagedTooth::varies_over_face)
         };

@@ -109,7 +109,7 @@ pub(crate) fn chamfer_row<S: 'static>(field: Field<S, Option<f64>>) -> KeyRow<S>
 
 /// The row of the active profile's shortening.
 pub(crate) fn shortening_row<S: 'static>(field: Field<S, f64>) -> KeyRow<S> {
-    let meaning = "the shortening of the path of contact against that between the chamfers, in base pitches, half at either end";
+    let meaning = "the shortening of the path of contact against that between the chamfers, in base pitches, half of it at the tips of either wheel";
     row("active_profile_shortening", "-", meaning, field).range(Range::from_to(0.0, 0.5))
 }
 

@@ -131,8 +131,7 @@ fn hand_of_spur(gears: &NamedGears) -> Option<ScenarioWarning> {
 /// * `slices` - of the mesh's face: 1 where its gap does not vary along it
 pub(crate) fn unused_slices(gears: &NamedGears, slices: usize) -> Option<ScenarioWarning> {
     (slices == 1 && gears.slices != Gears::SLICES).then(|| {
-        let message = "has no effect: the gap between the flanks does not vary along the face, which is taken as a whole; give \
-                       lead_crowning_um or end_relief, or remove slices";
+        let message = "has no effect: the face is taken as a whole; give lead_crowning_um or end_relief, or remove slices";
         ScenarioWarning::new(WarningKind::IgnoredKey, gears.key("slices"), message)
     })
 }

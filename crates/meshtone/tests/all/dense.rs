@@ -262,6 +262,9 @@ impl<'a> DenseMesh<'a> {
             // Within its slice.
             let ends = [slice, slice + 1].map(|edge| edge as f64 / windows - 0.5);
             let along = ((corner.place - position) / mesh.face.overlap()).clamp(ends[0], ends[1]);
+            // Of a slice midway to that edge which lies farther outside the path.
+            let outer = if (end == 1) == (mesh.face.overlap() > 0.0) { ends[1] } else { ends[0] };
+            let along = if windows > 1.0 { f64::midpoint(along, outer) } else { along };
             let z_m = mesh.two_unknowns().map_or(0.0, |[width_m, _]| width_m * along);
             let mut stretch = Stretch { corner, edges: [0.0; 2], offset_m, z_m };
             let shift = if end == 0 { -ahead_pitches } else { ahead_pitches };

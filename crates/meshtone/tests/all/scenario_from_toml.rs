@@ -77,14 +77,14 @@ fn the_wheels_of_a_pair_may_have_tips_of_their_own() {
     let ignored: Vec<_> = scenario.ignored_by_model().into_iter().map(|warning| warning.key).collect();
     assert_eq!(ignored, ["gears.flank_relief", "gears.tip_chamfer_mm"]);
 
-    // Of wheels that are alike one key is written, and the numbers of either can be set.
+    // Of wheels that are alike one key is written, and its number can be set; of others that of either.
     let alike = Scenario::from_toml(&gears("tip_chamfer_mm = 0.5\ngear_tip_chamfer_mm = 0.5")).unwrap();
     assert!(alike.to_toml().contains("\ntip_chamfer_mm = 0.5") && !alike.to_toml().contains("gear_tip"));
-    let own = [("gears.gear_tip_chamfer_mm", 0.2), ("gears.pinion_flank_relief.amount_um", 5.0)];
-    let changed = alike.with_numbers(&[own[0], ("gears.tip_chamfer_mm", 0.4), own[1]]).unwrap();
-    assert_eq!(chamfers(&changed), [Some(0.4), Some(0.2)]);
-    assert_eq!(reliefs(&changed), [[1.0, 5.0], [1.0, 0.0]]);
-    assert!(alike.with_number("gears.gear_module_mm", 3.0).is_err());
+    assert!(alike.with_number("gears.gear_tip_chamfer_mm", 0.2).is_err());
+    assert_eq!(chamfers(&alike.with_number("gears.tip_chamfer_mm", 0.4).unwrap()), [Some(0.4); 2]);
+    let apart = Scenario::from_toml(&gears("tip_chamfer_mm = 0.5\ngear_tip_chamfer_mm = 0.3")).unwrap();
+    let changed = apart.with_number("gears.gear_tip_chamfer_mm", 0.2).unwrap();
+    assert_eq!(chamfers(&changed), [Some(0.5), Some(0.2)]);
 
     let of_gear = "tip_chamfer_mm = 0.5\ngear_tip_chamfer_mm = 4.0";
     assert_refused(&gears(of_gear), "gears.gear_tip_chamfer_mm", 7, &["the module"]);

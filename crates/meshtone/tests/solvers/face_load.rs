@@ -273,3 +273,57 @@ fn leaning_faces_move_as_with_dense_matrices() {
         assert!(worst < 1e-8, "{name}: {worst:e}");
     }
 }
+
+/// An undivided helical face bears as one of many slices does, which crowning of nothing makes it: while all of it bears, and where a part does.
+#[test]
+fn helical_strips_bear_as_slices_do() {
+    for (diameter_mm, most) in [(40.0, 1e-2), (24.0, 2e-2)] {
+        let of = |crowning_um: f64| {
+            let mut gearbox = on_shafts(diameter_mm, BodyRotation::Machine);
+            for mesh in &mut gearbox.meshes {
+                (mesh.helix_angle_deg, mesh.lead_crowning_um, mesh.slices) = (12.0, crowning_um, 41);
+            }
+            let stages = stages(&gearbox).unwrap();
+            assert!(stages.meshes.iter().all(|mesh| mesh.two_unknowns().is_some()));
+            let at_rest = |number: usize| {
+                let force_n = stages.pairs[number].static_force_n;
+                stages.meshes[number].at_rest(force_n, 0..1).deflection_m
+            };
+            [0, 1].map(at_rest)
+        };
+        let worst = (of(0.0).iter().flatten().zip(of(1e-9).iter().flatten()))
+            .map(|(strips, slices)| (strips / slices - 1.0).abs())
+            .fold(0.0, f64::max);
+        println!("{diameter_mm} mm: {worst:.1e}");
+        assert!(worst < most, "{diameter_mm} mm: {worst:e}");
+    }
+}
+
+/// Where the helix vanishes, a face that leans bears as that of spur teeth does.
+#[test]
+fn leaning_helical_faces_meet_spur_ones() {
+    let of = |helix_angle_deg: f64| {
+        let mut gearbox = on_shafts(28.0, BodyRotation::Machine);
+        for mesh in &mut gearbox.meshes {
+            (mesh.helix_angle_deg, mesh.damping_ratio) = (helix_angle_deg, 0.1);
+        }
+        gearbox.solver.duration_s = Some(0.1);
+        let simulation = meshtone::simulate(plain(gearbox)).unwrap();
+        assert!(simulation.stages.meshes.iter().all(|mesh| mesh.two_unknowns().is_some()));
+        let static_um = simulation.stages.meshes[0]
+            .at_rest(simulation.stages.pairs[0].static_force_n, 0..1)
+            .peak_to_peak_m()
+            * 1e6;
+        let seats = simulation.channels.signals.iter().filter(|signal| signal.unit == "g");
+        let rms = |values: &[f64]| (values.iter().map(|x| x * x).sum::<f64>() / values.len() as f64).sqrt();
+        [vec![static_um], seats.map(|signal| rms(&signal.values)).collect()].concat()
+    };
+    let spur = of(0.0);
+    for (helix_angle_deg, most) in [(0.01, 0.01), (0.1, 0.03), (0.5, 0.2)] {
+        let found = of(helix_angle_deg);
+        let worst =
+            spur.iter().zip(&found).map(|(spur, found)| (found / spur - 1.0).abs()).fold(0.0, f64::max);
+        println!("{helix_angle_deg}: {worst:.1e}, {spur:?} {found:?}");
+        assert!(worst < most, "{helix_angle_deg}: {worst:e}");
+    }
+}
