@@ -258,8 +258,8 @@ class GearboxWheel(TypedDict, total=False):
     tip_chamfer_mm : float
         (mm) The height of the chamfer or rounding of all tips. Allowed: ≥ 0; less than 1 module.
     active_profile_shortening : float
-        (-) The shortening of the path of contact against that between the chamfers, in base pitches, half at either
-        end. Allowed: 0…0.5.
+        (-) The shortening of the path of contact against that between the chamfers, in base pitches, half of it at the
+        tips of either wheel. Allowed: 0…0.5.
     uniform_flank_reduction_mm : float
         (mm) A constant reduction of the working flank. Allowed: ≥ 0; less than π/4 modules, half the tooth's thickness.
     flank_relief : FlankRelief
@@ -587,8 +587,8 @@ class GearboxPlanetary(TypedDict, total=False):
     tip_chamfer_mm : float
         (mm) The height of the chamfer or rounding of all tips. Allowed: ≥ 0; less than 1 module.
     active_profile_shortening : float
-        (-) The shortening of the path of contact against that between the chamfers, in base pitches, half at either
-        end. Allowed: 0…0.5.
+        (-) The shortening of the path of contact against that between the chamfers, in base pitches, half of it at the
+        tips of either wheel. Allowed: 0…0.5.
     flank_relief : FlankRelief
         The relief of the flanks near all tips, as a gap in µm.
     backlash_mm : float
@@ -1416,16 +1416,16 @@ class ScenarioKeys:
             The relief of the flanks near the tips, as a gap in µm. Default: { shape = "parabolic", length_mm = 1.0,
             amount_um = 0.0 }. Ignored by published.
         pinion_flank_relief, gear_flank_relief : FlankRelief, optional
-            The value of this wheel alone. Default: that of both wheels. Ignored by published.
+            The value of this wheel alone, where they differ. Default: that of both wheels. Ignored by published.
         tip_chamfer_mm : float, optional
             (mm) The height of the chamfer or rounding of all tips. Allowed: ≥ 0; less than 1 module. Default: 0.23
             modules. Ignored by published.
         pinion_tip_chamfer_mm, gear_tip_chamfer_mm : float, optional
-            (mm) The value of this wheel alone. Allowed: ≥ 0; less than 1 module. Default: that of both wheels. Ignored
-            by published.
+            (mm) The value of this wheel alone, where they differ. Allowed: ≥ 0; less than 1 module. Default: that of
+            both wheels. Ignored by published.
         active_profile_shortening : float, optional
-            (-) The shortening of the path of contact against that between the chamfers, in base pitches, half at either
-            end. Allowed: 0…0.5. Default: 0.1. Ignored by linear, published.
+            (-) The shortening of the path of contact against that between the chamfers, in base pitches, half of it at
+            the tips of either wheel. Allowed: 0…0.5. Default: 0.1. Ignored by linear, published.
         backlash_mm : float, optional
             (mm) The backlash along the line of action. Allowed: ≥ 0; less than 1 module; at least that of a given
             centre distance. Default: ⅔ (0.06 + 0.0005 a + 0.03 m), a the centre distance, plus the backlash of a given

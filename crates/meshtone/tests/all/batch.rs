@@ -224,8 +224,8 @@ fn the_same_bits_alone_in_any_lane_and_any_thread_with_unbalance_and_helical_tee
     let scenarios = mixed_in_space();
     let is_side_by_side =
         |scenario: &&Scenario| stages(*scenario).is_ok_and(|stages| stages.stepped_alone().is_none());
-    // All but nine chipped helical pairs, whose faces are cut into slices.
-    assert_eq!(scenarios.iter().filter(is_side_by_side).count(), 28);
+    // All but nine chipped helical pairs, whose faces are cut into slices, and five whose load is so uneven that their wheels tilt.
+    assert_eq!(scenarios.iter().filter(is_side_by_side).count(), 23);
     expect_the_same_bits(scenarios);
 }
 

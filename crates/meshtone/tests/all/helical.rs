@@ -249,7 +249,12 @@ fn crowned_and_sloped_faces_are_those_of_an_independent_program() {
                 "{slices} slices {crowning_um} {slope_um} {force_n}: {error:.4} ({error_um}), {found:.1?} ({expected:?})"
             );
             let apart = |n: usize| (found[n] / expected[n] - 1.0).abs();
-            println!("{} slices, two {:?}", mesh.slices(), mesh.two_unknowns());
+            if mesh.two_unknowns().is_some() {
+                // Leaning strips are integrated in closed form; the error is that of the path with its corners.
+                assert!((0..3).all(|n| apart(n) < 0.02), "{found:?} {expected:?}");
+                assert!((with_corners / error_um - 1.0).abs() < 0.02, "{with_corners} {error_um}");
+                continue;
+            }
             if mesh.slices() == 1 || force_n > 1000.0 {
                 // The whole face touches.
                 assert!((0..3).all(|n| apart(n) < 1e-3));
@@ -365,7 +370,7 @@ fn the_number_of_slices_does_not_matter() {
     let of = |slices: u32| -> Vec<f64> {
         let mut gearbox = ideal_gearbox();
         for mesh in &mut gearbox.meshes {
-            // Flat within a millionth of what the load presses.
+            // Flat within a millionth of what the load presses. Strips that lean take a slice that is partly on the path for one that is wholly.
             (mesh.slices, mesh.lead_crowning_um) = (slices, 1e-6);
         }
         let simulation = meshtone::simulate(&gearbox).unwrap();
@@ -373,11 +378,11 @@ fn the_number_of_slices_does_not_matter() {
         let seats = simulation.channels.signals.iter().filter(|signal| signal.unit == "g");
         seats.map(|signal| rms(&signal.values)).collect()
     };
-    let expected = of(11);
-    for slices in [5, 41] {
+    let expected = of(21);
+    for (slices, most) in [(11, 5e-3), (41, 5e-3)] {
         let apart = of(slices).iter().zip(&expected).map(|(a, b)| (a / b - 1.0).abs()).fold(0.0, f64::max);
         println!("{slices} slices: {apart:.1e}");
-        assert!(apart < 5e-3, "{slices}: {apart}");
+        assert!(apart < most, "{slices}: {apart}");
     }
 }
 

@@ -233,7 +233,8 @@ fn rollers_bear_the_load_too() {
     gearbox = Scenario::from_toml(&toml).unwrap();
     let simulation = simulate(&gearbox);
     let found = rms(&seat(&simulation));
-    assert!(found > 2.0 * seat_rms(&rig(GearboxRig::Phm2009Helical, "")), "{found}");
+    let sound = seat_rms(&rig(GearboxRig::Phm2009Helical, ""));
+    assert!(found > 1.25 * sound, "{found} {sound}");
     assert_eq!(Scenario::from_toml(&gearbox.to_toml()).unwrap(), gearbox);
 }
 
@@ -327,21 +328,31 @@ fn unbalance_and_bent_shafts_shake_as_the_frequency_response_says() {
         let (machine, modes) = stages.machine_and_modes().unwrap();
         let omega = TAU * gearbox.operation.pinion_speed_hz;
         let complex = |matrix: DMatrix<f64>| matrix.map(|value| Complex::new(value, 0.0));
-        let dynamic = complex(machine.closed_stiffness(&stages.mean_stiffness_n_per_m()))
-            - complex(machine.mass.clone()) * Complex::new(omega * omega, 0.0)
-            + complex(modes.damping_matrix(machine)) * Complex::new(0.0, omega);
+        let free = machine.closed_stiffness(&stages.mean_stiffness_n_per_m());
+        let tilts = machine.lines.iter().zip(&stages.meshes).map(|(line, mesh)| {
+            let [width_m, _] = mesh.two_unknowns().unwrap_or_default();
+            &line.per_m * line.per_m.transpose() * (mesh.mean_stiffness_n_per_m * width_m * width_m / 12.0)
+        });
+        let held = tilts.fold(free.clone(), |sum, tilt| sum + tilt);
         let [force] = &machine.turning_forces[..] else { panic!("one force") };
         let factor = if force.of_square_speed { omega * omega } else { 1.0 };
         let force = DVector::from_fn(force.at[0].len(), |n, _| {
             Complex::new(force.at[0][n], -force.at[1][n]) * factor
         });
-        let displacement = dynamic.lu().solve(&force).unwrap();
         let place = stages.sensors[0].name();
         let weights = machine.weights(&place, Axis::Y).map(|weight| Complex::new(weight, 0.0));
-        let expected = weights.dot(&displacement).norm() * omega * omega;
+        let response = |closed: &DMatrix<f64>| {
+            let dynamic = complex(closed.clone())
+                - complex(machine.mass.clone()) * Complex::new(omega * omega, 0.0)
+                + complex(modes.damping_matrix(machine)) * Complex::new(0.0, omega);
+            let displacement = dynamic.lu().solve(&force).unwrap();
+            weights.dot(&displacement).norm() * omega * omega
+        };
+        // A face of which a part bears holds the wheels' tilt more than none does, and less than the whole.
+        let expected = [response(&held), response(&free)];
         let found = first_order(&simulate(&gearbox), gearbox.operation.pinion_speed_hz);
-        println!("{name}: {found:.5} m/s², {expected:.5}");
-        assert!((found / expected - 1.0).abs() < 0.05);
+        println!("{name}: {found:.5} m/s², {expected:.5?}");
+        assert!(0.95 * expected[0] < found && found < 1.05 * expected[1]);
     }
 }
 
