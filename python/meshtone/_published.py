@@ -1,9 +1,9 @@
 """Published data sets: the SHA-256 of each one's ``manifest.json``, which has that of every file."""
 
 PUBLISHED = {
-    "gearbox-1": "534edcf407e8c4fde4c9b04076a20758905d6dfa083eef83fae9509e0c6a04bd",
-    "laws-1": "df7f10a5dd660e8e863904ba277b6fac93c315c5ceb149d8fddff95e7a5b6621",
-    "lives-1": "2e8e6b895dc3b2973b2de612e05c8cc65430e33b3d2415fccaf8a7ebd34545ee",
-    "pairs-1": "bd223612e0661b55fc643f2c950dc38ec8d27223200ace19f253b2d8f0b07bdc",
-    "rigs-1": "b52584b7bb0e01df5e9553774d294feb71dd94b9a1e769f0cc74520a33037c17",
+    "gearbox-1": "2583c11af68a90030ef2670ac8da5b34c6f64d2d1601ca1baf43ef9b994566de",
+    "laws-1": "e754ce64867f3fb0c98a29e993ab22a1dfeffe3a083e64c6a05d584bfdd1efd2",
+    "lives-1": "ad333a6069f58f6ad2d4892ed4d16bde9c0d274f829dfaeccaeee4ed6b221cda",
+    "pairs-1": "5eef6bd2735a7df5ee092e1c60f91ff57c91b8a40cea42f98dcb364a554f2248",
+    "rigs-1": "9ae2a454a100952de9790c5a04df15e7c91148544167e9ce55d77f85066490f7",
 }
