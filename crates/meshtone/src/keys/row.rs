@@ -73,9 +73,9 @@ impl<S> KeyRow<S> {
         Self { head: KeyHead { absent: Absent::Words(words), ..self.head }, ..self }
     }
 
-    /// The key of another name that says the same of a part.
-    pub(crate) fn renamed(self, name: &'static str, meaning: &'static str) -> Self {
-        Self { head: KeyHead { name, meaning, ..self.head }, ..self }
+    /// The row with another meaning.
+    pub(crate) fn meaning(self, meaning: &'static str) -> Self {
+        Self { head: KeyHead { meaning, ..self.head }, ..self }
     }
 
     /// The numbers that are allowed whatever the other keys say.

@@ -558,18 +558,18 @@ impl Mesh {
         if !self.tilts() {
             return [tables.iter().map(|table| mean(&|position| at(table, position))).collect(), Vec::new()];
         }
-        let [first, second] = [mean(&|position| position), mean(&|position| position * position)];
+        let places = along_path.places(&positions, window);
         let lines = tables.iter().map(|table| {
             let means = mean(&|position| at(table, position));
             let moments = mean(&|position| at(table, position) * position);
             let line = |n: usize| {
-                let spread = second[n] - first[n] * first[n];
-                let covariance = moments[n] - means[n] * first[n];
+                let [place, spread] = places[n];
+                let covariance = moments[n] - means[n] * place;
                 // Of hardly anything on the path rounding would be the slope.
                 let per_pitch = if spread > LEAST_SPREAD { covariance / spread } else { 0.0 };
-                [means[n] - (first[n] - positions[n]) * per_pitch, per_pitch * overlap / 2.0]
+                (means[n] - (place - positions[n]) * per_pitch, per_pitch * overlap / 2.0)
             };
-            (0..positions.len()).map(line).map(|[midway, slope]| (midway, slope)).unzip()
+            (0..positions.len()).map(line).unzip()
         });
         <[Vec<Vec<f64>>; 2]>::from(lines.unzip())
     }

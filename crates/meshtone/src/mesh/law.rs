@@ -99,7 +99,7 @@ pub(crate) struct CornerAt {
     /// (√m) The edges of the line, as the v at which the corner reaches them: that nearer to the path, and the farther one.
     pub(crate) near: f64,
     pub(crate) far: f64,
-    /// (-) Of a face that tilts, where the end of the path lies along it, from −1 to 1.
+    /// (-) Of a face that tilts, where it touches along it, from −1 to 1: as of [`Mesh::corner_strip`].
     pub(crate) place: f64,
 }
 
@@ -648,7 +648,7 @@ impl MeshLaw {
             sums.add([force, moment], slopes, sliding);
         }
         for corner in springs.corners {
-            // It reaches so little of the face, or of a slice, that its deflection is that of the place where the path ends.
+            // It reaches over so little of the face that it has the deflection of one place.
             let (place, lean_m) = (corner.place, tilt_m + springs.closer_m);
             let [force, slope] = corner.force_and_slope(springs.laws, deflection_m + place * lean_m);
             let sliding = rubs.then(|| springs.sliding_of_laws[corner.law as usize]);

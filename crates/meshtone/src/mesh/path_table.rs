@@ -310,13 +310,21 @@ impl AlongPath {
     /// # Arguments
     /// * `positions`, `window` - as of [`Self::over_face`]
     pub(super) fn strips(&self, positions: &[f64], window: Window) -> Vec<[f64; 2]> {
-        let mean = self.mean(positions, window, |position| position);
-        let square = self.mean(positions, window, |position| position * position);
-        let strip = |((position, mean), square): ((&f64, f64), f64)| {
-            let half_width = (3.0 * (square - mean * mean)).max(0.0).sqrt();
-            [mean - position, half_width * window.overlap.signum()].map(|along| 2.0 * along / window.overlap)
+        let strip = |(position, [mean, spread]): (&f64, [f64; 2])| {
+            let half_width = (3.0 * spread).max(0.0).sqrt();
+            [2.0 * (mean - position) / window.overlap, 2.0 * half_width / window.overlap.abs()]
         };
-        positions.iter().zip(mean).zip(square).map(strip).collect()
+        positions.iter().zip(self.places(positions, window)).map(strip).collect()
+    }
+
+    /// (base pitches, and squared) Mean and variance of the places that contact lines have on the path, weighted by stiffness.
+    ///
+    /// # Arguments
+    /// * `positions`, `window` - as of [`Self::over_face`]
+    pub(super) fn places(&self, positions: &[f64], window: Window) -> Vec<[f64; 2]> {
+        let means = self.mean(positions, window, |position| position);
+        let squares = self.mean(positions, window, |position| position * position);
+        means.into_iter().zip(squares).map(|(mean, square)| [mean, square - mean * mean]).collect()
     }
 
     /// What the same contact lines have outside the path: that before its start, and that beyond its end.

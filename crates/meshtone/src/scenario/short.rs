@@ -217,7 +217,8 @@ macro_rules! each {
         }
         let own = |name, wheel| {
             let row = $row
-                .renamed(name, "the value of this wheel alone, where they differ")
+                .named(name)
+                .meaning("the value of this wheel alone, where they differ")
                 .otherwise("that of both wheels");
             row.alternative($example).of::<Scenario>(wheel)
         };

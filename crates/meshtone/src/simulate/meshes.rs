@@ -273,8 +273,8 @@ impl MeshOf<'_> {
         })
     }
 
-    /// Whether the face is cut into slices, since the gap between two flanks differs along it. Teeth that tilt, and spur teeth that have lost a part of
-    /// their face, need none: see [`MeshLaw`](crate::mesh::MeshLaw) and [`Pairs`].
+    /// Whether the face is cut into slices, since the gap between two flanks differs along it. Teeth that tilt, unless a
+    /// corner reaches over much of their face, and spur teeth that have lost a part of theirs need none: see [`MeshLaw`](crate::mesh::MeshLaw) and [`Pairs`].
     fn gap_varies_along_face(&self) -> bool {
         let gears = self.gears;
         let varies_along_contact_lines = || {
