@@ -159,7 +159,7 @@ warning_kinds! {
     LargeRunOut "large-run-out" "a wheel runs out by more than a tenth of the module";
     Overload "overload" "the load would break the teeth";
     UnevenFace "uneven-face" "the shafts lean so much that the load is at one end of the face";
-    NoContact "no-contact" "no pair of teeth is in mesh for a part of a revolution, and the linear mesh has no stiffness there";
+    NoContact "no-contact" "at times no pair of teeth is on the path of contact: a linear mesh has no stiffness there, else corners of tips touch";
     MeshPulls "mesh-pulls" "the linear mesh pulls where real teeth would separate";
     Resonance "resonance" "the mesh force is far beyond what a machine survives";
     MeshResonance "mesh-resonance" "a mesh frequency, or twice or three times it, is within 1 % of a natural frequency";

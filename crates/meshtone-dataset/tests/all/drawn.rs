@@ -67,14 +67,14 @@ fn a_unit_is_in_one_split_with_the_same_wheels() {
     }
 }
 
-/// Where the base states those of each wheel, and they differ.
+/// The base states one chamfer of both wheels and no relief.
 #[test]
 fn the_tips_of_either_wheel_vary() {
     let more = "[[vary]]\nkey = \"gears.gear_flank_relief.amount_um\"\nper = \"unit\"\nuniform = [10.0, 20.0]\n\
                 [[vary]]\nkey = \"gears.pinion_tip_chamfer_mm\"\nuniform = [0.1, 0.4]";
     let plan = plan(
         &FAST
-            .replace("points_per_tooth = 1000", "points_per_tooth = 1000\npinion_tip_chamfer_mm = 0.3\ngear_tip_chamfer_mm = 0.5\ngear_flank_relief = { amount_um = 15.0, length_mm = 1.0 }")
+            .replace("points_per_tooth = 1000", "points_per_tooth = 1000\ntip_chamfer_mm = 0.5")
             .replace("[keep]", &format!("{more}\n[keep]")),
     );
     let sampler = Sampler::new(&plan.content).unwrap();

@@ -7,7 +7,8 @@ use std::sync::OnceLock;
 use toml::de::{DeTable, DeValue};
 use toml::{Spanned, Value};
 
-use super::{Scenario, ScenarioError};
+use super::{Scenario, ScenarioError, short};
+use crate::wheel::WheelName;
 
 /// A number of a scenario.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,6 +22,9 @@ pub struct ScenarioNumber {
     pub whole: bool,
 }
 
+/// The line before the keys of a pair's teeth.
+const GEARS: &str = "[gears]\n";
+
 /// The text of a scenario file, and the numbers that stand in it.
 #[derive(Debug, Clone)]
 struct NumberedText {
@@ -32,10 +36,32 @@ struct NumberedText {
 #[derive(Debug, Clone)]
 struct NumberPlace {
     number: ScenarioNumber,
-    /// (bytes) Of the text.
+    /// (bytes) Of the text; empty where a line is put in.
     at: Range<usize>,
     /// Whether it is one of the numbers of a list, as those of a speed profile are.
     is_of_list: bool,
+    /// The key on the line that is put in, of a wheel of a pair whose mate has the same value under a key of both.
+    line: Option<String>,
+}
+
+impl NumberPlace {
+    /// The places of the same number of either wheel alone, where this is one that both wheels of a pair have.
+    ///
+    /// # Arguments
+    /// * `of_wheels` - the keys of `[gears]` that are of one wheel alone
+    /// * `at` - (bytes) where the section's first line starts
+    fn of_each_wheel(&self, of_wheels: &[&str], at: usize) -> Vec<Self> {
+        let Some(shared) = self.number.key.strip_prefix("gears.") else { return Vec::new() };
+        let own = WheelName::BOTH.map(|wheel| format!("{}_{shared}", wheel.name()));
+        let is_key = |line: &String| of_wheels.contains(&split_key(line).0);
+        let place = |line: String| Self {
+            number: ScenarioNumber { key: format!("gears.{line}"), ..self.number.clone() },
+            at: at..at,
+            is_of_list: self.is_of_list,
+            line: Some(line),
+        };
+        own.into_iter().filter(is_key).map(place).collect()
+    }
 }
 
 impl NumberedText {
@@ -46,6 +72,14 @@ impl NumberedText {
         let (text, mut places) = (small.to_toml(), Vec::new());
         let root = DeTable::parse(&text).map_err(|error| ScenarioError::new("", "", error.message()))?;
         places_in(root.get_ref(), "", &mut places);
+        if let Some(header) = text.find(GEARS) {
+            let rows = short::gears().rows;
+            let names: Vec<&str> = rows.iter().map(|row| row.head.name).collect();
+            let is_stated = |key: &str| places.iter().any(|place| place.number.key == key);
+            let own = places.iter().flat_map(|place| place.of_each_wheel(&names, header + GEARS.len()));
+            let own: Vec<_> = own.filter(|place| !is_stated(&place.number.key)).collect();
+            places.extend(own);
+        }
         Ok(Self { text, places })
     }
 
@@ -65,7 +99,7 @@ impl NumberedText {
     ) -> Result<Option<String>, ScenarioError> {
         let mut changes = BTreeMap::new();
         for &(key, value) in numbers {
-            let Some(NumberPlace { number, at, .. }) = self.place(key) else {
+            let Some(NumberPlace { number, at, line, .. }) = self.place(key) else {
                 missing(key, value)?;
                 continue;
             };
@@ -73,7 +107,11 @@ impl NumberedText {
             // Not −0, which is no count.
             let written =
                 if is_whole { format!("{:.0}", value + 0.0) } else { Value::Float(value).to_string() };
-            changes.insert(at.start, (at.clone(), written));
+            let written = match line {
+                Some(own) => format!("{own} = {written}\n"),
+                None => written,
+            };
+            changes.insert((at.start, key), (at.clone(), written));
         }
         let mut text = self.text.clone();
         // From the end on, so that what stands before keeps its place.
@@ -115,7 +153,7 @@ fn number_of(value: &Spanned<DeValue<'_>>, key: String, is_of_list: bool) -> Opt
         _ => return None,
     };
     let number = ScenarioNumber { key, value: written.parse().ok()?, whole };
-    Some(NumberPlace { number, at: value.span(), is_of_list })
+    Some(NumberPlace { number, at: value.span(), is_of_list, line: None })
 }
 
 /// What follows the name of a list in the keys of each of its entries: `[z1]` of a wheel, `[p]` of a planetary set, `[z1-z2]` of a mesh, `[input:0]` of a bearing, and
@@ -166,8 +204,7 @@ pub fn names_or_numbers(names: &[Option<String>]) -> Vec<String> {
 fn no_such_number(key: &str, value: f64) -> Result<(), ScenarioError> {
     Err(ScenarioError::new(key, format!("{value}"), "the scenario has no number at this key")
         .with_help(
-            "`meshtone init KIND` prints every key of a kind of fault; of a value that both wheels of a pair may have apart there is one key \
-             where they are alike, and one of each where they differ",
+            "`meshtone init KIND --all` prints every key of a kind of fault; where the wheels of a pair differ in a value, each has its own key",
         ))
 }
 
@@ -310,7 +347,8 @@ impl Scenario {
         changed.validate().map(|_| changed)
     }
 
-    /// Every key of the scenario file at which this scenario has a single number, defaults included.
+    /// Every key of the scenario file at which this scenario has a single number, defaults included; of a number that both wheels of a
+    /// pair have, such as a chamfer, also the keys of each wheel alone.
     ///
     /// ```
     /// use meshtone::scenario::{GearPair, Scenario};

@@ -132,16 +132,13 @@ fn points_of(time: &TimeGrid, turns_evenly: bool, turning: &Turning, pair: &Mesh
 
 /// The mesh, unless it can carry nothing, or has more pairs at once than a step looks at.
 fn checked(mesh: Mesh, gears: &NamedGears) -> Result<Mesh, ScenarioError> {
-    if mesh.mean_stiffness_n_per_m.is_nan() || mesh.mean_stiffness_n_per_m <= 0.0 {
-        return Err(error::not_stiff(gears.foundation()));
-    }
     if mesh.contact_ratio <= 0.0 {
         let problem = "the tips' chamfers and the active profile's shortening leave no path of contact";
-        let [pinion_mm, gear_mm] = WheelName::BOTH.map(|wheel| gears.chamfer_mm(wheel));
-        let larger = if pinion_mm < gear_mm { WheelName::Gear } else { WheelName::Pinion };
-        let chamfer = gears.key_of_each(larger, "tip_chamfer_mm", &gears.tip_chamfer_mm);
-        let help = format!("lower {chamfer} or {}", gears.key("active_profile_shortening"));
+        let help = format!("lower {}", gears.shorteners().join(" or "));
         return Err(ScenarioError::new(gears.whole(), "", problem).with_help(help));
+    }
+    if mesh.mean_stiffness_n_per_m.is_nan() || mesh.mean_stiffness_n_per_m <= 0.0 {
+        return Err(error::not_stiff(gears.foundation()));
     }
     if mesh.face.overlap() == 0.0 && mesh.contact_ratio > Mesh::MOST_CONTACT_RATIO {
         let (ratio, most) = (mesh.contact_ratio, Mesh::MOST_CONTACT_RATIO);

@@ -78,6 +78,7 @@ impl Stages {
             .chain(self.overloads())
             .chain(self.uneven_faces())
             .chain(self.without_contact())
+            .chain(self.short_paths())
             .chain(self.mesh_resonances())
             .collect()
     }
@@ -190,6 +191,22 @@ impl Stages {
                 100.0 * bare as f64 / stiffness.len() as f64
             );
             ScenarioWarning::new(WarningKind::NoContact, "fault", message)
+        })
+    }
+
+    /// Sound meshes whose tips' chamfers and shortening leave less than one pair of teeth on the path of contact at times.
+    fn short_paths(&self) -> impl Iterator<Item = ScenarioWarning> {
+        let meshes = self.meshes.iter().enumerate().filter(|_| self.teeth_part());
+        meshes.filter_map(|(number, mesh)| {
+            let ratio = mesh.contact_ratio + mesh.face.overlap().abs();
+            let gears = self.scenario.named_gears(&self.layout, number);
+            (ratio < 1.0).then(|| {
+                let [chamfer, shortening] = gears.shorteners();
+                let message = format!(
+                    "tips leave a contact ratio of {ratio:.2}, so that at times only their corners touch; lower it or {shortening}"
+                );
+                ScenarioWarning::new(WarningKind::NoContact, chamfer, message)
+            })
         })
     }
 

@@ -94,6 +94,14 @@ impl<'a> NamedGears<'a> {
         }
     }
 
+    /// The keys that shorten the path of contact: that of the larger chamfer, and that of the active profiles.
+    pub(crate) fn shorteners(&self) -> [String; 2] {
+        let [pinion_mm, gear_mm] = WheelName::BOTH.map(|wheel| self.chamfer_mm(wheel));
+        let larger = if pinion_mm < gear_mm { WheelName::Gear } else { WheelName::Pinion };
+        let chamfer = self.key_of_each(larger, "tip_chamfer_mm", &self.tip_chamfer_mm);
+        [chamfer, self.key("active_profile_shortening")]
+    }
+
     /// The key of the pair as a whole: `gears`, `mesh[0].wheels`.
     pub(crate) fn whole(&self) -> String {
         match &self.mesh {

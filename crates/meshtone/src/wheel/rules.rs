@@ -111,7 +111,7 @@ impl NamedGears<'_> {
 
     /// Warnings about wheels that can be simulated.
     pub(crate) fn warnings(&self) -> Vec<ScenarioWarning> {
-        undercut(self).chain(thin_tips(self)).chain(hand_of_spur(self)).collect()
+        undercut(self).chain(thin_tips(self)).chain(hand_of_spur(self)).chain(reliefs_cut_off(self)).collect()
     }
 }
 
@@ -122,6 +122,24 @@ fn hand_of_spur(gears: &NamedGears) -> Option<ScenarioWarning> {
         let message = "has no effect: the wheels are spur; give helix_angle_deg, or remove hand";
         ScenarioWarning::new(WarningKind::IgnoredKey, gears.key("hand"), message)
     })
+}
+
+/// Reliefs that end where the chamfer of the tips begins, so that none of them is left.
+fn reliefs_cut_off(gears: &NamedGears) -> Vec<ScenarioWarning> {
+    let of_wheel = |wheel: WheelName| {
+        let [chamfer_mm, relief_mm] = gears.tip_lengths_mm(wheel);
+        (relief_mm > 0.0 && relief_mm <= chamfer_mm).then(|| {
+            let message = format!(
+                "has no effect: {relief_mm} mm are relieved from the tip inwards, and the tip chamfer takes {chamfer_mm:.2} mm; lengthen \
+                 the relief"
+            );
+            let key = gears.key_of_each(wheel, "flank_relief.length_mm", &gears.flank_relief);
+            ScenarioWarning::new(WarningKind::IgnoredKey, key, message)
+        })
+    };
+    let mut warnings: Vec<_> = WheelName::BOTH.into_iter().filter_map(of_wheel).collect();
+    warnings.dedup();
+    warnings
 }
 
 /// The number of slices of a face that is not cut into slices.

@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use meshtone::scenario::{
-    DampingRatio, Fault, GearPair, MissingTooth, Model, Profile, Scenario, ScenarioWarning, WarningKind,
+    DampingRatio, Fault, FlankRelief, GearPair, MissingTooth, Model, Profile, Scenario, ScenarioWarning, WarningKind,
     WheelName,
 };
 use meshtone::sensor::{NamedSignal, SignalSource};
@@ -98,6 +98,31 @@ fn a_load_that_breaks_teeth_is_warned_of_with_their_deflection() {
     scenario.operation.torque_profile_nm =
         Some(Profile { time_s: vec![0.0, 1.0], value: vec![10.0, 10_000.0] });
     assert!(about(&of(&scenario), "operation.torque_profile_nm.value[1]").is_some());
+}
+
+/// Chamfers of two thirds of a module leave less than a pitch of the path; a relief that is shorter than a chamfer does nothing.
+#[test]
+fn chamfers_that_take_the_path_or_the_relief_are_told() {
+    let mut chamfered = pair();
+    chamfered.wheels[1].tip_chamfer_mm = Some(2.0);
+    let warnings = meshtone::stages(&chamfered).unwrap().warnings();
+    let told = warnings.iter().find(|warning| warning.kind == WarningKind::NoContact).unwrap();
+    assert_eq!(told.key, "gears.gear_tip_chamfer_mm");
+    chamfered.wheels.iter_mut().for_each(|wheel| wheel.tip_chamfer_mm = Some(2.9));
+    let refused = meshtone::stages(&chamfered).unwrap_err();
+    assert!(refused.help.unwrap().contains("gears.tip_chamfer_mm"));
+
+    let mut relieved = pair();
+    relieved.wheels.iter_mut().for_each(|wheel| {
+        wheel.flank_relief = FlankRelief { length_mm: 0.5, amount_um: 20.0, ..wheel.flank_relief };
+    });
+    let keys = |scenario: &Scenario| {
+        let warnings = meshtone::stages(scenario).unwrap().warnings();
+        warnings.into_iter().map(|warning| (warning.kind, warning.key)).collect::<Vec<_>>()
+    };
+    assert_eq!(keys(&relieved), [(WarningKind::IgnoredKey, "gears.flank_relief.length_mm".to_owned())]);
+    relieved.wheels[1].flank_relief.length_mm = 1.0;
+    assert_eq!(keys(&relieved), [(WarningKind::IgnoredKey, "gears.pinion_flank_relief.length_mm".to_owned())]);
 }
 
 /// A pair that lacks a tooth has none in contact for 2 less its contact ratio, in pitches.
