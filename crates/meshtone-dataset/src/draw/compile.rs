@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use meshtone::scenario::{ScenarioNumber, split_key};
+use meshtone::scenario::{ScenarioNumber, gearbox_sections, sections, split_key};
 use meshtone_io::scenario_file::ReadScenarioError;
 use meshtone_toml::{ReadResult, TomlError, nearest_name};
 
@@ -225,6 +225,9 @@ fn unknown(
     if fault_of_severity(key, faults.len()).is_some() {
         return error.with_help("write the fault with severity = … in place of its sizes");
     }
+    if let Some(default) = computed_default(key, content) {
+        return error.with_help(format!("it is left out (default: {default}); state it in the scenario to vary it"));
+    }
     error.with_help(match nearest_name(key, keys(known).chain(NOISE_KEYS).chain(PATH_KEYS)) {
         Some(nearest) => meant(key, nearest),
         None => {
@@ -233,6 +236,15 @@ fn unknown(
                 .to_owned()
         }
     })
+}
+
+/// What is taken where a key that may have a number is left out, in words.
+fn computed_default(key: &str, content: &Content) -> Option<String> {
+    let (section, key) = split_key(key);
+    let described = if content.base.rig().is_some() { sections() } else { gearbox_sections() };
+    let of_section = described.into_iter().filter(|of| of.name == list_and_entry(section).0);
+    let found = of_section.flat_map(|of| of.keys).find(|of| Some(of.key.as_str()) == key)?;
+    (!found.default.is_empty()).then_some(found.default)
 }
 
 /// Checks that every rule at the top concerns some class.

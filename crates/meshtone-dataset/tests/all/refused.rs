@@ -154,6 +154,8 @@ fn keys_that_are_none() {
     );
     let teeth = "[[vary]]\nkey = \"gears.gear_teeth\"\nuniform = [30, 50]\n[keep]";
     refused_with("[keep]", teeth, &["is a whole number", "choice or grid"]);
+    let backlash = "[[vary]]\nkey = \"gears.backlash_mm\"\nuniform = [0.1, 0.2]\n[keep]";
+    refused_with("[keep]", backlash, &["it is left out (default: ⅔", "state it in the scenario"]);
     refused_with(
         "uniform = [30.0, 60.0]",
         "unifrom = [30.0, 60.0]",
