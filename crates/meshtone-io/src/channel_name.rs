@@ -1,7 +1,7 @@
 //! The name of a channel in a file.
 
-use meshtone::scenario::Sensor;
-use meshtone::sensor::Channel;
+use meshtone::scenario::Scenario;
+use meshtone::sensor::{Channel, ChannelKind};
 use meshtone_toml::{ReadResult, TomlValue};
 
 /// Reads the name of one of some channels.
@@ -19,12 +19,16 @@ pub fn read_channel(value: &TomlValue<'_>, allowed: &[Channel]) -> ReadResult<Ch
     value.choice(&choices)
 }
 
-/// The accelerations of a scenario, sensors first.
+/// The accelerations of a scenario, sensors first: of shafts of beams those of its sensors alone.
 ///
 /// # Arguments
-/// * `sensors` - the scenario's
-pub fn accelerations(sensors: &[Sensor]) -> Vec<Channel> {
-    Channel::all(sensors).into_iter().filter(Channel::is_acceleration).collect()
+/// * `scenario` - a valid one
+pub fn accelerations(scenario: &Scenario) -> Vec<Channel> {
+    let sensors = scenario.all_sensors();
+    match scenario.rig() {
+        Some(_) => Channel::all(&sensors).into_iter().filter(Channel::is_acceleration).collect(),
+        None => sensors.iter().map(|sensor| Channel::Sensor(sensor.name())).collect(),
+    }
 }
 
 /// Reads the name of an acceleration of a scenario that is not known: any sensor may be named.
@@ -36,5 +40,5 @@ pub fn accelerations(sensors: &[Sensor]) -> Vec<Channel> {
 /// The value is no text, or no such name.
 pub(crate) fn read_any_acceleration(value: &TomlValue<'_>) -> ReadResult<Channel> {
     let sensor = value.string().ok().and_then(Channel::named).filter(Channel::is_acceleration);
-    sensor.map_or_else(|| read_channel(value, &accelerations(&[])), Ok)
+    sensor.map_or_else(|| read_channel(value, &ChannelKind::ACCELERATIONS.map(Channel::Fixed)), Ok)
 }

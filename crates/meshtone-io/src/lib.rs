@@ -21,6 +21,5 @@ pub mod signals;
 pub mod summary;
 pub mod table;
 pub mod trace_npz;
-pub mod wheel_name;
 
 pub use read_results::ReadResultsError;

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use meshtone::scenario::Scenario;
+use meshtone::tuning::HybridError;
 use meshtone_io::atomic_file::write_atomically;
 use meshtone_io::experiment::{EnhancedRecord, Tuned, enhance, read_tuned, write_enhanced};
 use meshtone_io::scenario_file::{FileKind, ScenarioFile};
@@ -52,7 +53,7 @@ Example:
 
 impl Enhance {
     pub fn run(&self) -> Result<(), Failure> {
-        let file = ScenarioFile::read_pair(&self.scenario)?;
+        let file = ScenarioFile::read(&self.scenario)?;
         let tuned = read_tuned(&self.tuned).map_err(|error| Failure::of_file(FileKind::Tuned, error))?;
         let scenario = tuned
             .apply(&file.scenario)
@@ -69,8 +70,13 @@ impl Enhance {
     }
 
     fn write(&self, scenario: &Scenario, tuned: &Tuned, path: &Path) -> Result<(), Failure> {
-        let draws = enhance(scenario, tuned, self.seed, self.draws)
-            .map_err(|error| Failure::bad_input(format!("{}: {error}", self.scenario.display())))?;
+        let draws = enhance(scenario, tuned, self.seed, self.draws).map_err(|error| {
+            let of = match error {
+                HybridError::NoSuchWheel { .. } => &self.tuned,
+                _ => &self.scenario,
+            };
+            Failure::bad_input(format!("{}: {error}", of.display()))
+        })?;
         write_atomically(path, |file| write_enhanced(file, scenario, tuned, self.seed, &draws))?;
         let records = &draws.records;
         let mean =

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use meshtone::scenario::{Scenario, WheelName};
+use meshtone::scenario::{Scenario, WheelName, gearbox_template};
 use meshtone::signal::{Edge, kurtosis, resample};
 use meshtone::tuning::{DifferenceChain, difference_signals};
 use serde_json::Value;
@@ -434,7 +434,7 @@ fn recordings_are_as_simulated(wheel: WheelName) {
         );
     }
     // As the simulation itself has them, at the rig's rate.
-    let chain = DifferenceChain { wheel, ..DifferenceChain::new(RIG_HZ) };
+    let chain = DifferenceChain { wheel: wheel.into(), ..DifferenceChain::new(RIG_HZ) };
     let expected: Vec<f64> = faults
         .iter()
         .map(|fault| {
@@ -473,6 +473,71 @@ fn recordings_are_as_simulated(wheel: WheelName) {
     assert!(metadata.contains(&format!("over one revolution of the {}", wheel.name())));
 }
 
+/// Of a gearbox the wheel is named, and a hidden severity of its damage is found again in recordings with other random forces.
+#[test]
+fn a_gearbox_is_tuned_over_the_revolutions_of_a_wheel() {
+    let workplace = workplace();
+    let gearbox = |seed: u64, severity: f64| {
+        let fault = match severity {
+            0.0 => String::new(),
+            _ => format!("[[fault]]\nwheel = \"z2\"\nkind = \"tooth-breakage\"\nseverity = {severity}\n"),
+        };
+        let text = gearbox_template(None)
+            .replace("seed = 1\n", &format!("seed = {seed}\nwheels_seed = 5\n"))
+            .replace("sampling_rate_hz = 100000.0", "sampling_rate_hz = 12800.0")
+            .replace("duration_s = 1.0", "duration_s = 2.0")
+            .replace("speed_wander_percent = 0.03", "")
+            .replace("at = \"input:0\"", "at = \"middle:0\"");
+        text.replace("[solver]", &format!("{fault}[solver]"))
+    };
+    workplace.write("gearbox.toml", gearbox(1, 0.0));
+    workplace.write("broken.toml", gearbox(1, 0.8));
+    let mut cases = String::new();
+    for (case, severity) in [0.0, 0.8].into_iter().enumerate() {
+        for seed in 2..=3 {
+            let name = format!("{case}{seed}");
+            workplace.write(&format!("{name}.toml"), gearbox(seed, severity));
+            workplace.succeeds(&["simulate", &format!("{name}.toml"), "--no-panel", "-q", "-o", &name]);
+        }
+        let fault = ["", "fault = { wheel = \"z2\", kind = \"tooth-breakage\", severity = 0.5 }\n"][case];
+        cases += &format!(
+            "[[case]]\nlabel = \"case {case}\"\nseverity = {case}\n{fault}\
+             recordings = [\"{case}2/signals.parquet\", \"{case}3/signals.parquet\"]\n"
+        );
+    }
+    let rate_hz = json(&workplace, "02/summary.json")["sampling_rate_hz"].as_f64().unwrap();
+    let channel = "middle_0_vertical_g";
+    let experiment = |wheel: &str| {
+        format!(
+            "scenario = \"gearbox.toml\"\n[signal]\nsampling_rate_hz = {rate_hz}\n{wheel}channel = \"{channel}\"\n\
+             [measured]\nchannel = \"{channel}\"\nrevolutions_per_record = 6\n\
+             [tune]\nwidth_ratio = 1.0\nfault_to_harmonics_ratio = 1.0\ncandidates = 10\n\
+             [[tune.key]]\nkey = \"fault.severity\"\nleast = 0.3\nlargest = 0.95\n{cases}"
+        )
+    };
+    workplace.write("rig.toml", experiment("wheel = \"z2\"\n"));
+    let warned = stderr(&workplace.succeeds(&["tune", "rig.toml", "-o", "out", "-q"]));
+    assert!(!warned.contains("fades"), "{warned}");
+    let tuning = json(&workplace, "out/tuning.json");
+    let found = tuning.pointer("/scenario_keys/fault.severity").and_then(Value::as_f64).unwrap();
+    println!("{found}: {warned}");
+    assert!((found - 0.8).abs() < 0.1, "{tuning:#}");
+    let enhance = ["enhance", "broken.toml", "--tuned", "out/tuned.toml", "-o", "enhanced"];
+    workplace.succeeds(&enhance);
+    let metadata = String::from_utf8_lossy(&workplace.read("enhanced/enhanced.parquet")).into_owned();
+    assert!(metadata.contains("over one revolution of z2"));
+
+    // In ten revolutions of the input the broken tooth meets it at another place each time.
+    workplace.write("input.toml", experiment("wheel = \"z1\"\n"));
+    let warned = stderr(&workplace.succeeds(&["tune", "input.toml", "-o", "input", "-q", "--no-figure"]));
+    assert!(
+        warned.contains("damaged on z2, but its signals are averaged over revolutions of z1"),
+        "{warned}"
+    );
+    refused(&workplace, &experiment(""), &["signal.wheel", "missing"]);
+    refused(&workplace, &experiment("wheel = \"gear\"\n"), &["\"z1\", \"z2\""]);
+}
+
 #[test]
 fn enhance_finds_the_place_of_a_fault_itself() {
     let workplace = workplace();
@@ -505,7 +570,7 @@ fn what_enhance_refuses() {
         &enhance("wrong.toml", "1"),
         &["wrong.toml", "line 3", "enhancement.width_ratio", "more than 0"],
     );
-    let other = ["other.toml", "line 8", "signal.wheel", "\"pinion\", \"gear\""];
+    let other = ["other.toml", "no wheel `rack`", "pinion, gear"];
     let with_wheel = [workplace.read("tuned.toml"), b"wheel = \"rack\"\n".to_vec()].concat();
     workplace.write("other.toml", with_wheel);
     workplace.fails(2, &enhance("other.toml", "1"), &other);

@@ -226,7 +226,8 @@ fn unknown(
         return error.with_help("write the fault with severity = … in place of its sizes");
     }
     if let Some(default) = computed_default(key, content) {
-        return error.with_help(format!("it is left out (default: {default}); state it in the scenario to vary it"));
+        return error
+            .with_help(format!("it is left out (default: {default}); state it in the scenario to vary it"));
     }
     error.with_help(match nearest_name(key, keys(known).chain(NOISE_KEYS).chain(PATH_KEYS)) {
         Some(nearest) => meant(key, nearest),

@@ -51,7 +51,7 @@ pub fn enhance(
 ) -> Result<EnhancedDraws, HybridError> {
     let healthy = scenario.clone().with_faults(Vec::new());
     let both = if scenario.faults.is_empty() { vec![healthy] } else { vec![healthy, scenario.clone()] };
-    let mut signals = difference_signals(both, &tuned.chain(&scenario.gears()))?;
+    let mut signals = difference_signals(both, &tuned.chain())?;
     // A healthy signal does not show where a fault would be.
     let centre_rev = match signals.len() {
         1 => tuned.centre_rev,
@@ -131,8 +131,8 @@ pub fn write_enhanced(
         (
             "meshtone.relative_difference",
             format!(
-                "difference signal over one revolution of the {}, over the rms of the enhanced healthy signal, meshtone.healthy_rms_g",
-                tuned.wheel.name()
+                "difference signal over one revolution of {}, over the rms of the enhanced healthy signal, meshtone.healthy_rms_g",
+                scenario.wheel_in_words(&tuned.wheel)
             ),
         ),
     ];

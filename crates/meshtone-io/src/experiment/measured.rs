@@ -1,6 +1,7 @@
 //! What was measured: a table of indicators, difference signals, or recordings.
 
 use meshtone::scenario::Scenario;
+use meshtone::signal::GearTrain;
 use meshtone::tuning::{Case, DifferenceChain, Measurements, TuningIndicator};
 use meshtone_toml::{ReadResult, TomlError, TomlTable, TomlValue};
 
@@ -47,6 +48,10 @@ pub(super) struct Wanted<'a> {
     pub(super) indicators: &'a [TuningIndicator],
     pub(super) chain: &'a DifferenceChain,
     pub(super) base: &'a Scenario,
+    /// Its shafts and wheels.
+    pub(super) train: GearTrain,
+    /// Number of the wheel over whose revolutions is averaged.
+    pub(super) wheel: usize,
 }
 
 /// Reads the measurements: exactly one of the three kinds must be there.

@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use meshtone::scenario::{Fault, Scenario};
+use meshtone::scenario::{Fault, Scenario, WheelName};
 use meshtone::sensor::Channel;
-use meshtone::signal::{MeanPart, SeparationSettings};
+use meshtone::signal::{GearTrain, MeanPart, SeparationSettings, TrainWheel};
 use meshtone::stages;
 use meshtone::tuning::{
     Case, DifferenceChain, EnhancementBounds, Experiment, HybridError, KeyRange, MOST_CANDIDATES, TunedKey,
@@ -16,7 +16,6 @@ use super::measured::{self, CaseFiles, Wanted};
 use super::recordings::RATE_TOLERANCE;
 use crate::channel_name::{accelerations, read_channel};
 use crate::scenario_file::{FileKind, ReadScenarioError, ScenarioFile, read_text};
-use crate::wheel_name::read_wheel;
 
 /// Combinations of the tuned keys' values that are simulated unless the file says otherwise.
 const CANDIDATES: u64 = 160;
@@ -85,11 +84,12 @@ impl Reading<'_> {
 
     fn experiment(&mut self, root: &TomlTable<'_>) -> ReadResult<Experiment> {
         let base = self.scenario(root)?;
-        let chain = root.table_or_empty("signal")?.read(|table| signal(table, &base))?;
+        let train = GearTrain::of_scenario(&base)?;
+        let (chain, wheel) = root.table_or_empty("signal")?.read(|table| signal(table, &base, &train))?;
         let listed = root.required("case", "the cases, [[case]] each, the healthy one first")?;
         let (mut cases, mut files) = (Vec::new(), Vec::new());
         for value in listed.array()? {
-            let (case, of_case) = value.table()?.read(case)?;
+            let (case, of_case) = value.table()?.read(|table| case(table, &base))?;
             let scenario = base.clone().with_faults(case.faults.clone());
             // Before anything is simulated.
             if let Err(error) = stages(&scenario) {
@@ -101,8 +101,15 @@ impl Reading<'_> {
         }
         check_cases(&listed, &cases)?;
         let Tune { indicators, bounds, keys, candidates, seed } = root.table_or_empty("tune")?.read(tune)?;
-        let wanted =
-            Wanted { cases: &cases, files: &files, indicators: &indicators, chain: &chain, base: &base };
+        let wanted = Wanted {
+            cases: &cases,
+            files: &files,
+            indicators: &indicators,
+            chain: &chain,
+            base: &base,
+            train,
+            wheel,
+        };
         let measured = root.table_or_empty("measured")?.read(|table| measured::read(table, &wanted, self))?;
         let experiment = Experiment { base, cases, chain, measured, bounds, keys, candidates, seed };
         for number in 0..experiment.keys.len() {
@@ -114,7 +121,7 @@ impl Reading<'_> {
 
     fn scenario(&mut self, root: &TomlTable<'_>) -> ReadResult<Scenario> {
         let named = root.required("scenario", "the scenario file that all cases have in common")?;
-        let mut error = match ScenarioFile::read_pair(&self.directory().join(named.string()?)) {
+        let mut error = match ScenarioFile::read(&self.directory().join(named.string()?)) {
             Ok(file) => {
                 self.sources.extend(file.sources().map(Path::to_path_buf));
                 return Ok(file.scenario);
@@ -160,22 +167,30 @@ fn check_cases(listed: &TomlValue<'_>, cases: &[Case]) -> ReadResult<()> {
     Ok(())
 }
 
-fn case<'a>(table: &TomlTable<'a>) -> ReadResult<(Case, CaseFiles<'a>)> {
+fn case<'a>(table: &TomlTable<'a>, base: &Scenario) -> ReadResult<(Case, CaseFiles<'a>)> {
     let label = table.required("label", "the case's name")?.string()?.to_owned();
     let severity =
         table.required("severity", "the severity of the fault, 0 for the healthy case")?.number()?;
-    let faults = Fault::list_from_table(table)?;
+    let faults = match base.rig() {
+        Some(_) => Fault::list_from_table(table)?,
+        None => {
+            let named = table.tables("fault")?.into_iter().map(|table| table.read(Fault::on_named_wheel));
+            named.collect::<ReadResult<_>>()?
+        }
+    };
     Ok((Case { label, severity, faults }, CaseFiles::read(table)?))
 }
 
 /// Reads how difference signals are taken. The sampling rate must lie between twice the mesh frequency and the simulation's rate:
 /// below, the mesh is not in the signals, and above, the simulations hold nothing to compare with.
-fn signal(table: &TomlTable<'_>, base: &Scenario) -> ReadResult<DifferenceChain> {
-    let channel =
-        table.read_optional("channel", |value| read_channel(value, &accelerations(&base.sensors)))?;
+fn signal(table: &TomlTable<'_>, base: &Scenario, train: &GearTrain) -> ReadResult<(DifferenceChain, usize)> {
+    let channel = table.read_optional("channel", |value| read_channel(value, &accelerations(base)))?;
+    let wheel = averaged_wheel(table, base, train)?;
+    let TrainWheel { teeth, shaft, .. } = train.wheels[wheel];
     let rate = table.required("sampling_rate_hz", "(S/s) the sampling rate of the rig's recordings")?;
     let sampling_rate_hz = rate.number()?;
-    let mesh_hz = base.operation.pinion_speed_hz * f64::from(base.gears().pinion_teeth);
+    let mesh_order = train.speed_ratio(shaft, train.input()).times(i64::from(teeth), 1);
+    let mesh_hz = base.operation.pinion_speed_hz * mesh_order.value();
     if sampling_rate_hz <= 2.0 * mesh_hz {
         let problem = format!("must be more than twice the mesh frequency of {mesh_hz} Hz");
         let error = rate.error(problem);
@@ -193,13 +208,12 @@ fn signal(table: &TomlTable<'_>, base: &Scenario) -> ReadResult<DifferenceChain>
         let help = "raise solver.sampling_rate_hz in the scenario, or resample the recordings";
         return Err(rate.error(problem).with_help(help));
     }
-    let wheel = table.read_optional("wheel", read_wheel)?.unwrap_or_default();
-    let teeth = base.gears().teeth(wheel) as usize;
-    let default = SeparationSettings::new(teeth);
-    let most_sidebands = (teeth as u64).saturating_sub(2) / 2;
+    // The meshes of all wheels on a shaft are taken away from the average over its revolutions.
+    let fewest = u64::from(train.teeth_on(shaft).min().unwrap_or(teeth));
+    let default = SeparationSettings::new(teeth as usize);
     let count = |key, most: u64| table.read_optional(key, |value| value.integer(0..=most));
-    let sidebands = count("sidebands", most_sidebands)?;
-    let orders = count("shaft_orders", teeth as u64 - 1)?;
+    let sidebands = count("sidebands", fewest.saturating_sub(2) / 2)?;
+    let orders = count("shaft_orders", fewest - 1)?;
     let separation = SeparationSettings {
         sidebands: sidebands.map_or(default.sidebands, |count| count as usize),
         shaft_orders: orders
@@ -207,12 +221,23 @@ fn signal(table: &TomlTable<'_>, base: &Scenario) -> ReadResult<DifferenceChain>
         mean: MeanPart::Removed,
         ..default
     };
-    Ok(DifferenceChain {
-        channel: channel.unwrap_or_else(|| Channel::leading(&base.sensors)),
+    let chain = DifferenceChain {
+        channel: channel.unwrap_or_else(|| Channel::leading(&base.all_sensors())),
         sampling_rate_hz,
-        wheel,
+        wheel: train.wheels[wheel].name.clone(),
         separation: Some(separation),
-    })
+    };
+    Ok((chain, wheel))
+}
+
+/// The number of the wheel over whose revolutions is averaged: by default the gear of a pair.
+fn averaged_wheel(table: &TomlTable<'_>, base: &Scenario, train: &GearTrain) -> ReadResult<usize> {
+    let names: Vec<(&str, usize)> =
+        train.wheels.iter().enumerate().map(|(number, wheel)| (wheel.name.as_str(), number)).collect();
+    if base.rig().is_some() && table.optional("wheel").is_none() {
+        return Ok(WheelName::default() as usize);
+    }
+    table.required("wheel", "the wheel over whose revolutions is averaged")?.choice(&names)
 }
 
 struct Tune {

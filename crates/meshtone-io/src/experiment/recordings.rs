@@ -3,8 +3,8 @@
 use meshtone::scenario::WheelName;
 use meshtone::signal::{
     AngularSettings, AngularSignal, ChainSettings, MeshTone, ShaftPhase, SignalError, StatedFacts,
-    StatedTurning, Tachometer, angular_resample, find_mismatch, points_per_revolution, process_angular,
-    process_angular_segments, tachometer_pulses,
+    StatedTurning, Tachometer, TrainRecording, TrainTurning, TrainWheel, angular_resample, find_mismatch,
+    points_per_revolution, process_angular, process_angular_segments, tachometer_pulses,
 };
 use meshtone::tuning::DifferenceChain;
 use meshtone_toml::{ReadResult, TomlError, TomlTable, TomlValue};
@@ -12,7 +12,6 @@ use meshtone_toml::{ReadResult, TomlError, TomlTable, TomlValue};
 use super::measured::Wanted;
 use super::read::Reading;
 use crate::recording::{ColumnChoice, Recording, RecordingOptions, read_recording};
-use crate::wheel_name::read_wheel;
 
 /// Of a sampling rate, relative: what a file's rounded times are off.
 pub(super) const RATE_TOLERANCE: f64 = 1e-4;
@@ -21,13 +20,20 @@ pub(super) const RATE_TOLERANCE: f64 = 1e-4;
 const SPEED_TOLERANCE: f64 = 0.05;
 
 /// How the phase of a recording's shafts is known.
-enum Phase<'a> {
-    /// The gear's shaft turns at a constant speed.
-    Constant { gear_shaft_hz: f64 },
+struct Phase<'a> {
+    /// Number of the shaft whose phase it is: the gear's of a pair, the input of a gearbox, or where the tachometer is.
+    shaft: usize,
+    source: PhaseSource<'a>,
+}
+
+/// Where it comes from.
+enum PhaseSource<'a> {
+    /// The shaft turns at a constant speed.
+    Constant { shaft_hz: f64 },
     /// Pulses of a tachometer's channel.
-    Tachometer { channel: &'a str, pulses_per_revolution: u32, shaft: WheelName },
-    /// The mesh tone itself.
-    MeshTone { gear_shaft_hz: f64 },
+    Tachometer { channel: &'a str, pulses_per_revolution: u32 },
+    /// The mesh tone itself, of the shaft's first wheel.
+    MeshTone { shaft_hz: f64 },
 }
 
 /// Difference signals by case and record.
@@ -44,10 +50,13 @@ pub(super) fn differences(
     let segment =
         table.read_optional("revolutions_per_record", |value| value.integer(2..=u64::from(u32::MAX)))?;
     let known = phase(table, wanted)?;
-    let tachometer = if let Phase::Tachometer { channel, .. } = known { Some(channel) } else { None };
+    let tachometer = match known.source {
+        PhaseSource::Tachometer { channel, .. } => Some(channel),
+        _ => None,
+    };
     let channels = [Some(channel), tachometer].into_iter().flatten().map(ColumnChoice::parse).collect();
     let options = RecordingOptions { channels, sampling_rate_hz: rate, ..RecordingOptions::default() };
-    let teeth = wanted.base.gears().teeth(wanted.chain.wheel);
+    let TrainWheel { teeth, shaft, .. } = wanted.train.wheels[wanted.wheel];
     let settings = settings(wanted)?;
     let mut warnings = Warnings::default();
     let mut all = Vec::new();
@@ -66,10 +75,19 @@ pub(super) fn differences(
                     "{name} has {given} S/s, but signal.sampling_rate_hz, to which the simulated signals are brought, is {stated}"
                 )));
             }
-            let phase = shaft_phase(&recording, &known, wanted).map_err(refuse)?;
+            let of_known = known_phase(&recording, &known, wanted).map_err(refuse)?;
+            let phase = wanted.train.carried(&of_known, known.shaft, shaft).map_err(refuse)?;
             let signal = &recording.channels[0].samples;
             let angular = angular_resample(signal, &phase, &settings.angular).map_err(refuse)?;
-            warnings.check(name, wanted, &known, (&phase, &angular), given);
+            let heard = Heard {
+                file: name,
+                rate_hz: given,
+                signal,
+                of_known: &of_known,
+                phase: &phase,
+                angular: &angular,
+            };
+            warnings.check(&heard, wanted, &known).map_err(refuse)?;
             let found = match segment {
                 None => process_angular(&angular, teeth, &settings).map(|record| vec![record]),
                 Some(count) => process_angular_segments(&angular, teeth, &settings, count as usize),
@@ -89,6 +107,19 @@ struct Warnings {
     first_of_kind: Vec<(WarningKind, String, usize)>,
 }
 
+/// What is looked at of a recording.
+struct Heard<'a> {
+    /// Its name.
+    file: &'a str,
+    rate_hz: f64,
+    signal: &'a [f64],
+    /// The phase of the shaft that is known, and that of the wheel over whose revolutions is averaged.
+    of_known: &'a ShaftPhase,
+    phase: &'a ShaftPhase,
+    /// The signal over the latter.
+    angular: &'a AngularSignal,
+}
+
 #[derive(Clone, Copy, PartialEq)]
 enum WarningKind {
     /// The shaft turns at another speed than the scenario's.
@@ -104,53 +135,35 @@ impl Warnings {
     ///
     /// Where the speed differs, the teeth are not looked at: the mesh orders are then elsewhere for that reason alone. The shaft that is
     /// stated depends on how the phase is known; only what the reader has stated can be reported as mistaken.
-    ///
-    /// # Arguments
-    /// * `file` - the recording's name
-    /// * `known` - how its phase is known
-    /// * `phase`, `angular` - of the wheel over whose revolutions is averaged
-    /// * `rate` - (S/s) of the recording
-    fn check(
-        &mut self,
-        file: &str,
-        wanted: &Wanted,
-        known: &Phase<'_>,
-        (phase, angular): (&ShaftPhase, &AngularSignal),
-        rate: f64,
-    ) {
+    fn check(&mut self, heard: &Heard, wanted: &Wanted, known: &Phase<'_>) -> Result<(), SignalError> {
+        let &Heard { file, rate_hz, signal, of_known, phase, angular } = heard;
         if let Some(warning) = phase.warnings.first() {
             self.add(WarningKind::Phase, file, warning.to_string());
         }
-        let wheel = wanted.chain.wheel;
-        let (turned, simulated) = (phase.mean_speed_hz(rate), nominal_speed_hz(wanted, wheel));
-        if (turned / simulated - 1.0).abs() > SPEED_TOLERANCE {
-            self.add(WarningKind::Speed, file, other_speed(wanted, turned / simulated));
-            return;
+        let wheel = &wanted.train.wheels[wanted.wheel];
+        let (turned_hz, simulated_hz) = (phase.mean_speed_hz(rate_hz), nominal_speed_hz(wanted, wheel.shaft));
+        if (turned_hz / simulated_hz - 1.0).abs() > SPEED_TOLERANCE {
+            self.add(WarningKind::Speed, file, other_speed(wanted, known.shaft, turned_hz / simulated_hz));
+            return Ok(());
         }
-        let gears = &wanted.base.gears();
-        let stated = StatedFacts {
-            teeth: gears.teeth(wheel),
-            mate_teeth: Some(gears.teeth(wheel.mate())),
-            turning: match *known {
-                Phase::Constant { gear_shaft_hz } if wheel == WheelName::Gear => {
-                    StatedTurning::ConstantSpeed { speed_hz: gear_shaft_hz }
-                }
-                Phase::Constant { .. } => StatedTurning::ConstantSpeed { speed_hz: turned },
-                Phase::Tachometer { pulses_per_revolution, shaft, .. } if shaft == wheel => {
-                    StatedTurning::Pulses { per_revolution: pulses_per_revolution }
-                }
-                Phase::MeshTone { .. } => StatedTurning::MeshTone { nominal_hz: turned },
-                Phase::Tachometer { .. } => StatedTurning::Other,
-            },
-        };
-        if let Some(find_mismatch) = find_mismatch(angular, &stated) {
-            let words = format!(
-                "over the revolutions of the {}, {} teeth: {find_mismatch}",
-                wheel.name(),
-                stated.teeth
-            );
-            self.add(WarningKind::Misfit, file, words);
+        if let (Some(_), [pinion, gear]) = (wanted.base.rig(), &wanted.train.wheels[..]) {
+            let mate = if wanted.wheel == 0 { gear } else { pinion };
+            let turning = known.stated(wheel.shaft, turned_hz);
+            let stated = StatedFacts { teeth: wheel.teeth, mate_teeth: Some(mate.teeth), turning };
+            if let Some(mismatch) = find_mismatch(angular, &stated) {
+                let words =
+                    format!("over the revolutions of the {}, {} teeth: {mismatch}", wheel.name, wheel.teeth);
+                self.add(WarningKind::Misfit, file, words);
+            }
+            return Ok(());
         }
+        // Several meshes are judged together, over the angle that is known.
+        let stated = known.stated(known.shaft, of_known.mean_speed_hz(rate_hz));
+        let turning = TrainTurning::Shaft { shaft: known.shaft, phase: of_known.clone(), stated };
+        let recording =
+            TrainRecording { signal, sampling_rate_hz: rate_hz, train: &wanted.train, turning: &turning };
+        recording.check()?.iter().for_each(|misfit| self.add(WarningKind::Misfit, file, misfit.to_string()));
+        Ok(())
     }
 
     fn add(&mut self, kind: WarningKind, file: &str, words: String) {
@@ -169,28 +182,31 @@ impl Warnings {
     }
 }
 
-/// (Hz) Speed of the shaft of a wheel in the simulations.
-fn nominal_speed_hz(wanted: &Wanted, wheel: WheelName) -> f64 {
-    let gears = &wanted.base.gears();
-    wanted.base.operation.pinion_speed_hz * f64::from(gears.pinion_teeth) / f64::from(gears.teeth(wheel))
+/// (Hz) Speed of a shaft in the simulations.
+fn nominal_speed_hz(wanted: &Wanted, shaft: usize) -> f64 {
+    let train = &wanted.train;
+    wanted.base.operation.pinion_speed_hz * train.speed_ratio(shaft, train.input()).value()
 }
 
 /// # Arguments
+/// * `shaft` - whose phase is known
 /// * `ratio` - of the recording's speed to the scenario's
-fn other_speed(wanted: &Wanted, ratio: f64) -> String {
-    let simulated_hz = nominal_speed_hz(wanted, WheelName::Gear);
+fn other_speed(wanted: &Wanted, shaft: usize, ratio: f64) -> String {
+    let simulated_hz = nominal_speed_hz(wanted, shaft);
     format!(
-        "the gear's shaft turns at {:.4} Hz, but in the scenario at {simulated_hz:.4} Hz ({:+.1} %), and what is tuned are simulations \
-         at that speed: correct what [measured] says of it, or write operation.pinion_speed_hz = {:.4} in the scenario",
+        "{} turns at {:.4} Hz, but in the scenario at {simulated_hz:.4} Hz ({:+.1} %), and what is tuned are simulations \
+         at that speed: correct what [measured] says of it, or write {} = {:.4} in the scenario",
+        wanted.base.shaft_in_words(&wanted.train.shafts[shaft].name),
         simulated_hz * ratio,
         100.0 * (ratio - 1.0),
+        wanted.base.words().speed_key,
         wanted.base.operation.pinion_speed_hz * ratio,
     )
 }
 
 /// As simulated signals are processed: so many points a revolution, read in the same way.
 fn settings(wanted: &Wanted) -> ReadResult<ChainSettings> {
-    let shaft_hz = nominal_speed_hz(wanted, wanted.chain.wheel);
+    let shaft_hz = nominal_speed_hz(wanted, wanted.train.wheels[wanted.wheel].shaft);
     let rate = wanted.chain.sampling_rate_hz;
     let revolution = ShaftPhase::constant(shaft_hz, rate, (3.0 * rate / shaft_hz).ceil() as usize)
         .map_err(|error| TomlError::new("signal.sampling_rate_hz", rate, error.to_string()))?;
@@ -198,16 +214,24 @@ fn settings(wanted: &Wanted) -> ReadResult<ChainSettings> {
         points_per_revolution: Some(points_per_revolution(&revolution)),
         ..DifferenceChain::angular_settings(wanted.base.model)
     };
-    Ok(ChainSettings { angular, separation: wanted.chain.separation.clone() })
+    let separation = wanted.chain.separation.as_ref();
+    let separation = separation.map(|settings| wanted.train.separation(wanted.wheel, settings));
+    Ok(ChainSettings { angular, separation })
 }
 
+/// Reads what `[measured]` says of the phase: of a shaft's speed by `gear_shaft_hz` of a pair and `input_shaft_hz` of a gearbox.
 fn phase<'a>(table: &TomlTable<'a>, wanted: &Wanted) -> ReadResult<Phase<'a>> {
-    let nominal = nominal_speed_hz(wanted, WheelName::Gear);
-    let stated = table.number("gear_shaft_hz")?;
-    let gear_shaft_hz = stated.unwrap_or(nominal);
+    let (speed_key, usual) = match wanted.base.rig() {
+        Some(_) => ("gear_shaft_hz", WheelName::Gear as usize),
+        None => ("input_shaft_hz", wanted.train.input()),
+    };
+    let shafts = wanted.train.shafts.iter().enumerate();
+    let names: Vec<(&str, usize)> = shafts.map(|(number, shaft)| (shaft.name.as_str(), number)).collect();
+    let stated = table.number(speed_key)?;
+    let shaft_hz = stated.unwrap_or_else(|| nominal_speed_hz(wanted, usual));
     let tachometer = table.optional("tachometer_channel");
     let pulses = table.read_optional("pulses_per_revolution", |value| value.integer(1..=100_000))?;
-    let on = table.read_optional("tachometer_shaft", read_wheel)?;
+    let on = table.read_optional("tachometer_shaft", |value| value.choice(&names))?;
     let is_mesh_tone = table.read_optional("phase_from_mesh_tone", TomlValue::boolean)?.unwrap_or(false);
     let refuse_if = |given: bool, key: &str, problem: &str| match given {
         true => Err(table.error(key, problem)),
@@ -217,41 +241,56 @@ fn phase<'a>(table: &TomlTable<'a>, wanted: &Wanted) -> ReadResult<Phase<'a>> {
         let problem = "given without tachometer_channel, so it has no effect";
         refuse_if(pulses.is_some(), "pulses_per_revolution", problem)?;
         refuse_if(on.is_some(), "tachometer_shaft", problem)?;
-        return Ok(match is_mesh_tone {
-            true => Phase::MeshTone { gear_shaft_hz },
-            false => Phase::Constant { gear_shaft_hz },
-        });
+        let source = match is_mesh_tone {
+            true => PhaseSource::MeshTone { shaft_hz },
+            false => PhaseSource::Constant { shaft_hz },
+        };
+        return Ok(Phase { shaft: usual, source });
     };
     let problem = "given beside tachometer_channel; the phase has one source";
-    refuse_if(stated.is_some(), "gear_shaft_hz", problem)?;
+    refuse_if(stated.is_some(), speed_key, problem)?;
     refuse_if(is_mesh_tone, "phase_from_mesh_tone", problem)?;
-    Ok(Phase::Tachometer {
-        channel: channel.string()?,
-        pulses_per_revolution: pulses.unwrap_or(1) as u32,
-        shaft: on.unwrap_or_default(),
-    })
+    let pulses_per_revolution = pulses.unwrap_or(1) as u32;
+    let source = PhaseSource::Tachometer { channel: channel.string()?, pulses_per_revolution };
+    Ok(Phase { shaft: on.unwrap_or(usual), source })
 }
 
-/// Phase of the shaft over whose revolutions is averaged.
-fn shaft_phase(recording: &Recording, phase: &Phase, wanted: &Wanted) -> Result<ShaftPhase, SignalError> {
+impl Phase<'_> {
+    /// What is stated of a shaft: only that can be reported as mistaken.
+    ///
+    /// # Arguments
+    /// * `shaft` - its number
+    /// * `turned_hz` - (Hz) its mean speed
+    fn stated(&self, shaft: usize, turned_hz: f64) -> StatedTurning {
+        let is_known = self.shaft == shaft;
+        match self.source {
+            PhaseSource::Constant { shaft_hz } if is_known => {
+                StatedTurning::ConstantSpeed { speed_hz: shaft_hz }
+            }
+            PhaseSource::Constant { .. } => StatedTurning::ConstantSpeed { speed_hz: turned_hz },
+            PhaseSource::Tachometer { pulses_per_revolution, .. } if is_known => {
+                StatedTurning::Pulses { per_revolution: pulses_per_revolution }
+            }
+            PhaseSource::MeshTone { .. } => StatedTurning::MeshTone { nominal_hz: turned_hz },
+            PhaseSource::Tachometer { .. } => StatedTurning::Other,
+        }
+    }
+}
+
+/// Phase of the shaft that is known.
+fn known_phase(recording: &Recording, phase: &Phase, wanted: &Wanted) -> Result<ShaftPhase, SignalError> {
     let rate = recording.sampling_rate_hz;
-    let gears = &wanted.base.gears();
-    let (of, phase) = match *phase {
-        Phase::Constant { gear_shaft_hz } => {
-            (WheelName::Gear, ShaftPhase::constant(gear_shaft_hz, rate, recording.len())?)
+    match phase.source {
+        PhaseSource::Constant { shaft_hz } => ShaftPhase::constant(shaft_hz, rate, recording.len()),
+        PhaseSource::MeshTone { shaft_hz } => {
+            let teeth = wanted.train.teeth_on(phase.shaft).next().unwrap_or(1);
+            let tone = MeshTone::new(teeth, shaft_hz);
+            ShaftPhase::from_mesh_tone(&recording.channels[0].samples, rate, &tone)
         }
-        Phase::MeshTone { gear_shaft_hz } => {
-            let tone = MeshTone::new(gears.gear_teeth, gear_shaft_hz);
-            (WheelName::Gear, ShaftPhase::from_mesh_tone(&recording.channels[0].samples, rate, &tone)?)
-        }
-        Phase::Tachometer { pulses_per_revolution, shaft, .. } => {
+        PhaseSource::Tachometer { pulses_per_revolution, .. } => {
             let waveform = &recording.channels[1].samples;
             let times_s = tachometer_pulses(waveform, rate, &Tachometer::default())?;
-            let phase =
-                ShaftPhase::from_pulses(&times_s, pulses_per_revolution, None, rate, recording.len())?;
-            (shaft, phase)
+            ShaftPhase::from_pulses(&times_s, pulses_per_revolution, None, rate, recording.len())
         }
-    };
-    let wheel = wanted.chain.wheel;
-    if of == wheel { Ok(phase) } else { phase.of_mate(gears.teeth(of), gears.teeth(wheel)) }
+    }
 }

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use meshtone::scenario::{Gears, Model, Scenario, ScenarioError, WheelName};
+use meshtone::scenario::{Model, Scenario, ScenarioError, WheelName};
 use meshtone::sensor::{Channel, ChannelKind};
 use meshtone::signal::{MeanPart, SeparationSettings};
 use meshtone::tuning::{DifferenceChain, Enhancement, Experiment, ExperimentResult};
@@ -11,7 +11,6 @@ use meshtone_toml::{ReadResult, TomlDocument, TomlTable, TomlValue};
 
 use crate::channel_name::read_any_acceleration;
 use crate::scenario_file::{FileKind, ReadScenarioError, read_text};
-use crate::wheel_name::read_wheel;
 
 /// What tuning found.
 #[derive(Debug, Clone, PartialEq)]
@@ -26,8 +25,8 @@ pub struct Tuned {
     pub channel: Channel,
     /// (S/s) The rig's sampling rate.
     pub sampling_rate_hz: f64,
-    /// Over whose revolutions they are averaged.
-    pub wheel: WheelName,
+    /// Name of the wheel over whose revolutions they are averaged.
+    pub wheel: String,
     /// Sidebands that are taken away.
     pub sidebands: usize,
     /// The last of the shaft orders that are taken away.
@@ -43,17 +42,14 @@ impl Tuned {
     /// * `experiment`, `result` - as of [`meshtone::tuning::run_experiment`]
     pub fn of(experiment: &Experiment, result: &ExperimentResult) -> Self {
         let values = result.with_keys.as_ref().map_or(&[][..], |keys| &keys.values);
-        let wheel = experiment.chain.wheel;
-        let teeth = experiment.base.gears().teeth(wheel) as usize;
-        let separation =
-            experiment.chain.separation.clone().unwrap_or_else(|| SeparationSettings::new(teeth));
+        let separation = experiment.chain.separation.clone().unwrap_or_else(|| SeparationSettings::new(1));
         Self {
             model: experiment.base.model,
             enhancement: result.tuning().enhancement,
             centre_rev: result.simulated().centre_rev(),
             channel: experiment.chain.channel.clone(),
             sampling_rate_hz: experiment.chain.sampling_rate_hz,
-            wheel,
+            wheel: experiment.chain.wheel.clone(),
             sidebands: separation.sidebands,
             shaft_orders: separation.shaft_orders.len(),
             keys: experiment.keys.iter().map(|key| key.key.clone()).zip(values.iter().copied()).collect(),
@@ -87,21 +83,18 @@ impl Tuned {
     }
 
     /// How difference signals are taken.
-    ///
-    /// # Arguments
-    /// * `gears` - of the scenario
-    pub fn chain(&self, gears: &Gears) -> DifferenceChain {
+    pub fn chain(&self) -> DifferenceChain {
         let separation = SeparationSettings {
             sidebands: self.sidebands,
             shaft_orders: (1..=self.shaft_orders).collect(),
             // A sensor's offset is no vibration.
             mean: MeanPart::Removed,
-            ..SeparationSettings::new(gears.teeth(self.wheel) as usize)
+            ..SeparationSettings::new(1)
         };
         DifferenceChain {
             channel: self.channel.clone(),
             sampling_rate_hz: self.sampling_rate_hz,
-            wheel: self.wheel,
+            wheel: self.wheel.clone(),
             separation: Some(separation),
         }
     }
@@ -116,7 +109,7 @@ impl Tuned {
 /// ```
 /// use meshtone::sensor::ChannelKind;
 /// use meshtone::tuning::Enhancement;
-/// use meshtone::scenario::{Model, WheelName};
+/// use meshtone::scenario::Model;
 /// use meshtone_io::experiment::{Tuned, read_tuned, write_tuned};
 ///
 /// let tuned = Tuned {
@@ -125,7 +118,7 @@ impl Tuned {
 ///     centre_rev: 0.03,
 ///     channel: ChannelKind::Vertical.into(),
 ///     sampling_rate_hz: 25e3,
-///     wheel: WheelName::Pinion,
+///     wheel: "pinion".into(),
 ///     sidebands: 2,
 ///     shaft_orders: 7,
 ///     keys: vec![("rig.damping_ratio".into(), 0.034)],
@@ -157,7 +150,7 @@ pub fn write_tuned(tuned: &Tuned, from: &str) -> String {
         tuned.model.name(),
         tuned.centre_rev,
         tuned.sampling_rate_hz,
-        tuned.wheel.name(),
+        tuned.wheel,
         tuned.sidebands,
         tuned.shaft_orders
     );
@@ -230,7 +223,9 @@ fn tuned(root: &TomlTable<'_>) -> ReadResult<Tuned> {
             centre_rev,
             channel: channel.unwrap_or(ChannelKind::Vertical.into()),
             sampling_rate_hz,
-            wheel: table.read_optional("wheel", read_wheel)?.unwrap_or_default(),
+            wheel: table
+                .read_optional("wheel", |value| value.string().map(str::to_owned))?
+                .unwrap_or_else(|| WheelName::default().into()),
             sidebands: count("sidebands", 2)?,
             shaft_orders: count("shaft_orders", 7)?,
             keys,

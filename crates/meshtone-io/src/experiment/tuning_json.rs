@@ -19,7 +19,7 @@ pub fn tuning_json(file: &ExperimentFile, result: &ExperimentResult) -> Value {
     all["warnings"] = json!(warnings(file, result));
     all["meshtone_version"] = json!(env!("CARGO_PKG_VERSION"));
     all["seed"] = json!(experiment.seed);
-    all["wheel"] = json!(experiment.chain.wheel.name());
+    all["wheel"] = json!(experiment.chain.wheel);
     all["centre_rev"] = json!(result.simulated().centre_rev());
     if let Some(keys) = &result.with_keys {
         let values = experiment.keys.iter().zip(&keys.values);

@@ -14,7 +14,7 @@ fn channel_may_be_a_sensors() {
         centre_rev: 0.0,
         channel: Channel::Sensor("casing".into()),
         sampling_rate_hz: 25e3,
-        wheel: WheelName::Gear,
+        wheel: WheelName::Gear.into(),
         sidebands: 2,
         shaft_orders: 7,
         keys: Vec::new(),

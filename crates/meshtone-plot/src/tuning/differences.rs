@@ -2,7 +2,7 @@
 
 use super::data::Data;
 use super::symbols::{ENHANCED_CURVE, MEASURED_CURVE, ORIGINAL_CURVE};
-use crate::drawing::{Anchor, Area, Axes, Canvas, Stroke, TextStyle, Ticks, axes, capitalised};
+use crate::drawing::{Anchor, Area, Axes, Canvas, Stroke, TextStyle, Ticks, axes};
 
 const ORIGINAL_TITLE: &str = "Original simulation (over the healthy rms)";
 const ENHANCED_TITLE: &str = "Enhanced, one draw of the noise (over the healthy rms)";
@@ -20,7 +20,12 @@ pub(super) fn heading(data: &Data) -> String {
         None => "each on its own scale",
         Some(_) => "enhanced and measured ones of a case on the same scale",
     };
-    format!("Difference signals over one {} revolution, {scales}", data.experiment.chain.wheel.name())
+    format!("Difference signals over one revolution of {}, {scales}", averaged(data))
+}
+
+/// The wheel over whose revolutions is averaged, in words.
+fn averaged(data: &Data) -> String {
+    data.experiment.base.wheel_in_words(&data.experiment.chain.wheel)
 }
 
 /// Number of rows of signals.
@@ -77,8 +82,7 @@ pub(super) fn draw(canvas: &mut Canvas, areas: &[Area], data: &Data) {
             }
         }
     }
-    let wheel = capitalised(data.experiment.chain.wheel.name());
-    let angle = format!("{wheel} angle from the middle of the fault’s response (rev)");
+    let angle = format!("Angle of {} from the middle of the fault’s response (rev)", averaged(data));
     Axes::new(lowest, [0.0; 2], [0.0; 2]).x_name(canvas, &angle);
 }
 

@@ -135,10 +135,10 @@ fn measured_difference_signals_stand_below_the_enhanced_ones() {
 fn the_shaft_that_is_averaged_over_is_named() {
     let mut experiment = experiment(&LABELS[..2], &TWO[..1]);
     for (wheel, over, angle) in [
-        (WheelName::Gear, "over one gear revolution", "Gear angle from the middle"),
-        (WheelName::Pinion, "over one pinion revolution", "Pinion angle from the middle"),
+        (WheelName::Gear, "over one revolution of the gear", "Angle of the gear from the middle"),
+        (WheelName::Pinion, "over one revolution of the pinion", "Angle of the pinion from the middle"),
     ] {
-        experiment.chain.wheel = wheel;
+        experiment.chain.wheel = wheel.into();
         experiment
             .cases
             .iter_mut()

@@ -252,6 +252,17 @@ impl Scenario {
         }
     }
 
+    /// A wheel in words: `the gear`, `z1`.
+    ///
+    /// # Arguments
+    /// * `name` - its name
+    pub fn wheel_in_words(&self, name: &str) -> String {
+        match self.structure {
+            Structure::Rig(_) => format!("the {name}"),
+            Structure::Shafts(_) => name.to_owned(),
+        }
+    }
+
     /// Makes a shaft thicker by a factor, all of it.
     ///
     /// # Arguments
@@ -410,8 +421,6 @@ impl Structure {
 /// The error of shafts of beams where one pair in a rig is expected.
 pub(super) fn refused_as_pair() -> ScenarioError {
     let problem = "is of a gearbox, and one pair of gears, [gears], is expected here";
-    ScenarioError::new("mesh", "", problem).with_help(
-        "`meshtone simulate`, `indicators`, `path`, `diagnose`, `explore` and data sets accept \
-         gearboxes; the models published and linear, and tuning, accept one pair only",
-    )
+    ScenarioError::new("mesh", "", problem)
+        .with_help("the models published and linear, and `meshtone wheels`, accept one pair only")
 }

@@ -4,8 +4,9 @@ use super::Trace;
 use crate::operation::TimeGrid;
 use crate::sensor::{Channels, SensorDirection, SignalSource};
 use crate::signal::{
-    AngularSettings, AntiAliasing, ChainSettings, Edge, Interpolation, Record, ShaftPhase, SignalError,
-    process_channel, resample, resample_to, whole_ratio,
+    AngleZero, AngularSettings, AntiAliasing, ChainSettings, Edge, GearTrain, Interpolation, Record,
+    ShaftPhase, SignalError, StatedTurning, TrainRecording, TrainSettings, TrainTurning, process_channel,
+    resample, resample_to, whole_ratio,
 };
 use crate::simulate::Stages;
 use crate::wheel::WheelName;
@@ -74,6 +75,32 @@ pub(crate) fn wheel_record(
         }
     };
     process_channel(&signal, &phase, gears.teeth(wheel), &settings)
+}
+
+/// Does what [`wheel_record`] does of a wheel on a shaft of beams: the input turns as the motor does, and its phase gives those of the others.
+///
+/// # Arguments
+/// * `stages`, `signal`, `rate_hz` - as of [`wheel_record`]
+/// * `train`, `wheel` - the machine, and the number of its wheel
+/// * `settings` - how the channel is processed
+pub(crate) fn train_record(
+    stages: &Stages,
+    (train, wheel): (&GearTrain, usize),
+    signal: &[f64],
+    rate_hz: f64,
+    settings: &TrainSettings,
+) -> Result<Record, SignalError> {
+    let rates = Rates { from_hz: stages.time.sampling_rate_hz, to_hz: rate_hz };
+    let input = ShaftPhase::of_simulated_input(&stages.scenario, 0.0, signal.len())?;
+    let turning = TrainTurning::Shaft {
+        shaft: train.input(),
+        phase: rates.phase(&input)?.with_zero(AngleZero::Simulated),
+        stated: StatedTurning::Other,
+    };
+    let signal = resample_to(signal, rates.from_hz, rate_hz, Edge::Reflect)?;
+    let recording = TrainRecording { signal: &signal, sampling_rate_hz: rate_hz, train, turning: &turning };
+    // Without segments there is one record.
+    Ok(recording.process_one(wheel, settings)?.records.swap_remove(0))
 }
 
 /// The whole number of a wheel's revolutions that the kept signal spans, where it does and is periodic.

@@ -5,7 +5,7 @@ mod gearbox;
 mod run;
 mod stages;
 
-pub(crate) use average::wheel_record;
+pub(crate) use average::{train_record, wheel_record};
 use gearbox::gearbox_stages;
 pub use run::{trace, trace_at, trace_of};
 use stages::static_stages;

@@ -6,7 +6,9 @@ use crate::error::ScenarioError;
 use crate::model::Model;
 use crate::scenario::Scenario;
 use crate::sensor::{Channel, ChannelKind};
-use crate::signal::{AngularSettings, ChainSettings, Interpolation, Record, SeparationSettings};
+use crate::signal::{
+    AngularSettings, ChainSettings, GearTrain, Interpolation, Record, SeparationSettings, TrainSettings,
+};
 use crate::simulate::Stages;
 use crate::solver::Output;
 use crate::wheel::WheelName;
@@ -18,10 +20,10 @@ pub struct DifferenceChain {
     pub channel: Channel,
     /// (S/s) The rig's sampling rate, to which the simulated signal is brought first; at most the simulation's.
     pub sampling_rate_hz: f64,
-    /// Over whose revolutions the signal is averaged: those of the wheel that carries the fault.
-    pub wheel: WheelName,
-    /// Sidebands and shaft orders that are taken away; by default as the paper has them. The mesh order is always that of the
-    /// wheel as it is simulated, whatever `teeth` says.
+    /// Over whose revolutions the signal is averaged: the name of the wheel that carries the fault.
+    pub wheel: String,
+    /// Sidebands and shaft orders that are taken away; by default as the paper has them. The mesh orders are always those of the
+    /// wheel's shaft as it is simulated, whatever `teeth` says.
     pub separation: Option<SeparationSettings>,
 }
 
@@ -32,7 +34,7 @@ impl DifferenceChain {
     /// * `sampling_rate_hz` - (S/s)
     pub fn new(sampling_rate_hz: f64) -> Self {
         let channel = ChannelKind::Vertical.into();
-        Self { channel, sampling_rate_hz, wheel: WheelName::Gear, separation: None }
+        Self { channel, sampling_rate_hz, wheel: WheelName::Gear.into(), separation: None }
     }
 
     /// Settings by which signals, simulated or measured, are read at equal angles: under `published` by PCHIP as in the paper, which flattens a
@@ -51,10 +53,10 @@ impl DifferenceChain {
     /// # Arguments
     /// * `stages` - of the simulation
     /// * `signal` - the channel, all kept samples
-    /// * `pinion_speed_hz` - (Hz) likewise; read where the speed follows a profile
+    /// * `pinion_speed_hz` - (Hz) of a pair likewise; read where the speed follows a profile
     ///
     /// # Errors
-    /// Those of [`crate::signal::process_channel`].
+    /// A wheel that the machine does not have; those of [`crate::signal::process_channel`].
     pub fn record(
         &self,
         stages: &Stages,
@@ -62,11 +64,32 @@ impl DifferenceChain {
         pinion_speed_hz: &[f64],
     ) -> Result<Record, HybridError> {
         let rate_hz = self.sampling_rate_hz.min(stages.time.sampling_rate_hz);
-        let teeth = stages.layout.gears[0].teeth(self.wheel) as usize;
-        let separation = self.separation.clone().map(|settings| SeparationSettings { teeth, ..settings });
+        let train = GearTrain::of_stages(stages);
+        let wheel = self.wheel_of(&train)?;
         let angular = Self::angular_settings(stages.scenario.model);
+        let Some(side) = stages.scenario.rig().and(WheelName::BOTH.get(wheel)) else {
+            let separation = self.separation.clone().unwrap_or_else(|| SeparationSettings::new(1));
+            let settings = TrainSettings { angular, separation, revolutions: None };
+            return Ok(crate::trace::train_record(stages, (&train, wheel), signal, rate_hz, &settings)?);
+        };
+        let separation = self.separation.as_ref().map(|settings| train.separation(wheel, settings));
         let settings = ChainSettings { angular, separation };
-        Ok(crate::trace::wheel_record(stages, self.wheel, signal, pinion_speed_hz, rate_hz, settings)?)
+        Ok(crate::trace::wheel_record(stages, *side, signal, pinion_speed_hz, rate_hz, settings)?)
+    }
+
+    /// The number of the wheel in a machine.
+    ///
+    /// # Arguments
+    /// * `train` - the machine
+    ///
+    /// # Errors
+    /// It has no wheel of this name.
+    pub fn wheel_of(&self, train: &GearTrain) -> Result<usize, HybridError> {
+        let found = train.wheels.iter().position(|wheel| wheel.name == self.wheel);
+        found.ok_or_else(|| HybridError::NoSuchWheel {
+            wheel: self.wheel.clone(),
+            known: train.wheels.iter().map(|wheel| wheel.name.as_str()).collect::<Vec<_>>().join(", "),
+        })
     }
 }
 
@@ -103,13 +126,16 @@ pub fn difference_signals(
 pub(super) struct KeepDifference<'a>(pub(super) &'a DifferenceChain);
 
 impl Keep for KeepDifference<'_> {
-    // The channel, and the pinion's speed.
+    // The channel, and of a pair the pinion's speed.
     type Recorder = [Vec<f64>; 2];
     type Kept = Result<Vec<f64>, HybridError>;
 
     fn outputs(&self, scenario: &Scenario) -> Result<Vec<Output>, ScenarioError> {
         let channel = self.0.channel.output_of(scenario)?;
-        Ok(vec![channel, ChannelKind::PinionShaftSpeed.output()])
+        // How shafts of beams turn follows from the motor's motion alone: the second output is not read.
+        let speed =
+            scenario.rig().map_or_else(|| channel.clone(), |_| ChannelKind::PinionShaftSpeed.output());
+        Ok(vec![channel, speed])
     }
 
     fn recorder(&self, _: &Stages) -> Self::Recorder {

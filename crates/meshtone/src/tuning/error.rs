@@ -27,6 +27,14 @@ pub enum HybridError {
         /// Its length.
         values: usize,
     },
+    /// The wheel over whose revolutions signals are averaged is none of the machine's.
+    #[error("there is no wheel `{wheel}`; there are {known}")]
+    NoSuchWheel {
+        /// Its name.
+        wheel: String,
+        /// The names of those that there are.
+        known: String,
+    },
     /// A value is not a finite number.
     #[error("value {index} of {what} is not a finite number")]
     NotANumber {

@@ -8,6 +8,7 @@ use super::simulations::Simulations;
 use super::tune::TuningInputs;
 use super::{Case, Enhancement, Experiment, HybridError, SimulatedCases, Tuning, TuningWarning, tune};
 use crate::scenario::Scenario;
+use crate::signal::GearTrain;
 
 /// Result of an experiment.
 #[derive(Debug, Clone)]
@@ -92,23 +93,30 @@ pub fn run_experiment(
     }
     let keys = if with_keys.is_some() { experiment.keys.len() } else { 0 };
     let reported = with_keys.as_mut().map_or(&mut enhancement_alone, |keys| &mut keys.tuning);
-    reported.warnings.extend(damaged_on_mate_wheel(experiment));
+    reported.warnings.extend(damaged_on_other_shafts(experiment));
     reported.warnings.extend(few_numbers(experiment, keys));
     reported.warnings.extend(predicts_worse(reported));
     Ok(ExperimentResult { original, enhancement_alone, with_keys })
 }
 
 /// Cases whose damage meets another place of the averaged wheel in each of its revolutions.
-fn damaged_on_mate_wheel(experiment: &Experiment) -> impl Iterator<Item = TuningWarning> {
-    let averaged = experiment.chain.wheel;
-    let gears = &experiment.base.gears();
-    // Where the mate turns a whole number of times meanwhile, its damage is averaged as well.
-    let fades = !gears.teeth(averaged).is_multiple_of(gears.teeth(averaged.mate()));
-    let on_the_mate = move |case: &Case| !case.faults.iter().any(|fault| fault.side() == averaged);
+fn damaged_on_other_shafts(experiment: &Experiment) -> Vec<TuningWarning> {
+    let averaged = &experiment.chain.wheel;
+    let Ok(train) = GearTrain::of_scenario(&experiment.base) else { return Vec::new() };
+    let shaft_of = |name: &str| train.wheels.iter().find(|wheel| wheel.name == name).map(|wheel| wheel.shaft);
+    // Where the other shaft turns a whole number of times meanwhile, its damage is averaged as well.
+    let fades = |damaged: &str| match [damaged, averaged].map(shaft_of) {
+        [Some(damaged), Some(averaged)] => train.speed_ratio(damaged, averaged).denominator != 1,
+        _ => false,
+    };
     let faulty = experiment.cases.iter().enumerate().skip(1);
-    faulty
-        .filter(move |(_, case)| fades && on_the_mate(case))
-        .map(move |(case, _)| TuningWarning::OtherWheel { case, averaged })
+    let fading = faulty.filter(|(_, case)| case.faults.iter().all(|fault| fades(&fault.wheel)));
+    let warning = |(case, of): (usize, &Case)| {
+        let [damaged, averaged] =
+            [&of.faults.first()?.wheel, averaged].map(|wheel| experiment.base.wheel_in_words(wheel));
+        Some(TuningWarning::OtherWheel { case, damaged, averaged })
+    };
+    fading.filter_map(warning).collect()
 }
 
 /// Warns where there are no more measurements than tuned numbers.

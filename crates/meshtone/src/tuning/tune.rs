@@ -7,7 +7,6 @@ use thiserror::Error;
 use super::search::{Grid, Objective, Point, Target, enhancement, equal_weights, point, refine};
 use super::{Enhancement, EnhancementBounds, Fit, HybridError, Measurements, SimulatedCases};
 use crate::threads;
-use crate::wheel::WheelName;
 
 /// Bootstrap samples of the records.
 const BOOTSTRAP_SAMPLES: u64 = 200;
@@ -139,16 +138,18 @@ pub enum TuningWarning {
         /// Its records.
         records: usize,
     },
-    /// The faults of a case are on the mate of the wheel over whose revolutions the signals are averaged.
+    /// The faults of a case are on other shafts than that over whose revolutions the signals are averaged.
     #[error(
-        "case {case} is damaged on the {} alone, but its signals are averaged over revolutions of the {}, in which \
-         that damage fades", averaged.mate().name(), averaged.name()
+        "case {case} is damaged on {damaged}, but its signals are averaged over revolutions of {averaged}, in which \
+         that damage fades"
     )]
     OtherWheel {
         /// Number of the case.
         case: usize,
-        /// The wheel that is averaged over.
-        averaged: WheelName,
+        /// The damaged wheel, in words.
+        damaged: String,
+        /// The wheel that is averaged over, in words.
+        averaged: String,
     },
     /// The enhancement is no better than the simulation was.
     #[error("the enhancement does not bring the signals closer to the measured ones")]

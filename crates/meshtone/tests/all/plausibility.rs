@@ -2,8 +2,8 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use meshtone::scenario::{
-    DampingRatio, Fault, FlankRelief, GearPair, MissingTooth, Model, Profile, Scenario, ScenarioWarning, WarningKind,
-    WheelName,
+    DampingRatio, Fault, FlankRelief, GearPair, MissingTooth, Model, Profile, Scenario, ScenarioWarning,
+    WarningKind, WheelName,
 };
 use meshtone::sensor::{NamedSignal, SignalSource};
 use meshtone::{Simulation, simulate};
@@ -122,7 +122,10 @@ fn chamfers_that_take_the_path_or_the_relief_are_told() {
     };
     assert_eq!(keys(&relieved), [(WarningKind::IgnoredKey, "gears.flank_relief.length_mm".to_owned())]);
     relieved.wheels[1].flank_relief.length_mm = 1.0;
-    assert_eq!(keys(&relieved), [(WarningKind::IgnoredKey, "gears.pinion_flank_relief.length_mm".to_owned())]);
+    assert_eq!(
+        keys(&relieved),
+        [(WarningKind::IgnoredKey, "gears.pinion_flank_relief.length_mm".to_owned())]
+    );
 }
 
 /// A pair that lacks a tooth has none in contact for 2 less its contact ratio, in pitches.

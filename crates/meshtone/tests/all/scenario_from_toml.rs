@@ -80,7 +80,10 @@ fn the_wheels_of_a_pair_may_have_tips_of_their_own() {
     // Of wheels that are alike one key is written, and its number can be set; of others that of either.
     let alike = Scenario::from_toml(&gears("tip_chamfer_mm = 0.5\ngear_tip_chamfer_mm = 0.5")).unwrap();
     assert!(alike.to_toml().contains("\ntip_chamfer_mm = 0.5") && !alike.to_toml().contains("gear_tip"));
-    assert_eq!(chamfers(&alike.with_number("gears.gear_tip_chamfer_mm", 0.2).unwrap()), [Some(0.5), Some(0.2)]);
+    assert_eq!(
+        chamfers(&alike.with_number("gears.gear_tip_chamfer_mm", 0.2).unwrap()),
+        [Some(0.5), Some(0.2)]
+    );
     let numbers = [("gears.gear_flank_relief.amount_um", 20.0), ("gears.flank_relief.length_mm", 2.0)];
     assert_eq!(reliefs(&alike.with_numbers(&numbers).unwrap()), [[2.0, 0.0], [2.0, 20.0]]);
     assert!(alike.with_number("gears.gear_face_width_mm", 20.0).is_err());

@@ -29,6 +29,8 @@ fn recording(seed: u64) -> Option<Recording> {
         wheel.iso_class = draws.count(5, 8) as u8;
     }
     gearbox.faults.clear();
+    // Some wheels have no room.
+    meshtone::stages(&gearbox).ok()?;
     gearbox = crate::plain::even(gearbox);
     if draws.chance(0.5) {
         let wheel = draws.one(&["z1", "z2", "z3", "z4"]).to_owned();

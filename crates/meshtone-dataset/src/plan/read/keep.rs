@@ -38,7 +38,7 @@ pub(super) fn read(table: &TomlTable<'_>, base: &Scenario, tuned: Option<&Tuned>
         distinct(value, "is named twice", |value| read_channel(value, &known.channels))
     })?;
     let duration_s = table.read_optional("duration_s", |value| over_zero(value, "must be more than 0 s"))?;
-    let of_tuned = || tuned.map(|tuned| AveragedWheels::One(tuned.wheel.into()));
+    let of_tuned = || tuned.map(|tuned| AveragedWheels::One(tuned.wheel.clone()));
     let wheel = table.read_optional("wheel", |value| wheels(value, base))?.or_else(of_tuned);
     let wheel = wheel.unwrap_or_else(|| default_wheels(base));
     // The meshes of all wheels on a shaft are taken away from the average over its revolutions.
@@ -141,9 +141,9 @@ impl Known {
     fn of(base: &Scenario) -> Self {
         let sensors = base.all_sensors();
         let of_sensors: Vec<Channel> = sensors.iter().map(|sensor| Channel::Sensor(sensor.name())).collect();
-        let (channels, accelerations) = match base.rig() {
-            Some(_) => (Channel::all(&sensors), accelerations(&sensors)),
-            None => (of_sensors.clone(), of_sensors.clone()),
+        let channels = match base.rig() {
+            Some(_) => Channel::all(&sensors),
+            None => of_sensors.clone(),
         };
         let usual = match base.rig() {
             Some(_) if sensors.is_empty() => {
@@ -151,7 +151,7 @@ impl Known {
             }
             _ => of_sensors,
         };
-        Self { channels, accelerations, usual, leading: Channel::leading(&sensors) }
+        Self { channels, accelerations: accelerations(base), usual, leading: Channel::leading(&sensors) }
     }
 }
 
@@ -161,7 +161,7 @@ fn agree(table: &TomlTable<'_>, keep: &Keep, tuned: Option<&Tuned>) -> ReadResul
     for (key, same) in [
         ("sampling_rate_hz", keep.sampling_rate_hz == tuned.sampling_rate_hz),
         ("analysed", keep.analysed == tuned.channel),
-        ("wheel", keep.wheel == AveragedWheels::One(tuned.wheel.into())),
+        ("wheel", keep.wheel == AveragedWheels::One(tuned.wheel.clone())),
         ("sidebands", keep.sidebands == tuned.sidebands),
         ("shaft_orders", keep.shaft_orders == tuned.shaft_orders),
         ("duration_s", keep.duration_s.is_none()),
