@@ -144,7 +144,7 @@ def diagnose(
     signal : {'recording', 'average', 'difference'}
         What the recordings are.
     tuned : str or path, optional
-        A ``tuned.toml``, whose numbers are put into the scenario of a pair.
+        A ``tuned.toml``, whose numbers are put into the scenario.
     reference : str or path, optional
         Folder in which simulations are kept; by default ``meshtone/reference`` in the user's cache directory.
     records : int
@@ -188,9 +188,8 @@ def diagnose(
     """
     if signal not in ("recording", "average", "difference"):
         raise ValueError(f"signal '{signal}': must be 'recording', 'average' or 'difference'")
-    if not native_scenario(scenario).is_pair and (tuned is not None or signal != "recording"):
-        given = f"tuned = {tuned!r}" if tuned is not None else f"signal = '{signal}'"
-        raise ValueError(f"{given}: needs the scenario of a pair; leave it out with a gearbox, and give whole recordings")
+    if not native_scenario(scenario).is_pair and signal != "recording":
+        raise ValueError(f"signal = '{signal}': needs the scenario of a pair; give whole recordings of a gearbox")
     rig = native_scenario(scenario)
     if tuned is not None:
         rig = _core.tuned_rig(rig, tuned)

@@ -13,6 +13,7 @@ use meshtone_io::atomic_file::{WriteFileError, write_atomically};
 use meshtone_io::npz::{NpzReader, NpzWriter};
 use meshtone_learn::{MESH_ORDERS, WheelLines, separations};
 use rayon::prelude::*;
+use serde_json::json;
 use sha2::{Digest, Sha256};
 
 use crate::draw::{DrawnFault, RECORDS_PER_UNIT};
@@ -85,13 +86,34 @@ impl ReferenceStore {
     /// # Arguments
     /// * `prior` - what the set is drawn from
     pub fn folder_of(&self, prior: &Prior) -> PathBuf {
+        // All fields are named, so that none is forgotten; the train follows from the rig.
+        let Prior {
+            base,
+            train: _,
+            spreads,
+            grade_steps,
+            speed_spread,
+            load_spread,
+            load_change,
+            gain_db,
+            has_any_sensor,
+            healthy_speed_hz,
+            seed,
+            focus,
+        } = prior;
+        let identity = json!({
+            "versions": [env!("CARGO_PKG_VERSION"), PHYSICS_VERSION.to_string(), FORMAT.to_string()],
+            "counts": [RECORDS_PER_UNIT, MESH_ORDERS as u64, u64::from(*grade_steps), *seed],
+            "rig": base.to_toml(),
+            "spreads": spreads.iter().map(|of| json!([of.key, of.deviation])).collect::<Vec<_>>(),
+            "numbers": [speed_spread, load_spread, load_change, gain_db],
+            "sensor": has_any_sensor,
+            "healthy_speed_hz": healthy_speed_hz,
+            "focus": focus.as_ref().map(|of| json!([of.kind, of.wheel, of.severity])),
+            "kinds": prior.kinds().iter().map(|of| json!([of.name, of.sizes])).collect::<Vec<_>>(),
+        });
         let mut hash = Sha256::new();
-        hash.update(env!("CARGO_PKG_VERSION"));
-        // Every field is plain data, and numbers are written so that they are read back exactly.
-        hash.update(format!("{PHYSICS_VERSION} {FORMAT} {RECORDS_PER_UNIT} {MESH_ORDERS} {prior:?}"));
-        for kind in prior.kinds() {
-            hash.update(format!("{} {:?};", kind.name, kind.sizes));
-        }
+        hash.update(identity.to_string());
         let name: String = hash.finalize().iter().take(8).map(|byte| format!("{byte:02x}")).collect();
         self.folder.join(name)
     }

@@ -139,10 +139,7 @@ impl Diagnose {
         let mut scenario = file.scenario.clone().with_faults(Vec::new());
         if let Some(path) = &self.tuned {
             let refuse = |problem: String| Failure::bad_input(format!("{}: {problem}", path.display()));
-            if scenario.rig().is_none() {
-                let problem = "is of a pair, and the scenario of a gearbox".to_owned();
-                return Err(refuse(problem).with_help("leave out --tuned"));
-            }
+
             let tuned = read_tuned(path).map_err(|error| Failure::of_file(FileKind::Tuned, error))?;
             if let Some(problem) = tuned.warning_for(&scenario) {
                 return Err(refuse(problem).with_help("tune again with the scenario's model"));

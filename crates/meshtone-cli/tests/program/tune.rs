@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use meshtone::scenario::{Scenario, WheelName, gearbox_template};
+use meshtone::scenario::{GearboxRig, Scenario, WheelName, gearbox_template};
 use meshtone::signal::{Edge, kurtosis, resample};
 use meshtone::tuning::{DifferenceChain, difference_signals};
 use serde_json::Value;
@@ -493,49 +493,76 @@ fn a_gearbox_is_tuned_over_the_revolutions_of_a_wheel() {
     workplace.write("gearbox.toml", gearbox(1, 0.0));
     workplace.write("broken.toml", gearbox(1, 0.8));
     let mut cases = String::new();
+    let mut rate_hz = 0.0;
     for (case, severity) in [0.0, 0.8].into_iter().enumerate() {
         for seed in 2..=3 {
-            let name = format!("{case}{seed}");
-            workplace.write(&format!("{name}.toml"), gearbox(seed, severity));
-            workplace.succeeds(&["simulate", &format!("{name}.toml"), "--no-panel", "-q", "-o", &name]);
+            let simulation =
+                meshtone::simulate(Scenario::from_toml(&gearbox(seed, severity)).unwrap()).unwrap();
+            rate_hz = simulation.channels.sampling_rate_hz;
+            // With six pulses a turn of the middle shaft, which turns at 10 Hz.
+            let pulse = |n: usize| if (60.0 * n as f64 / rate_hz).fract() < 0.2 { 5.0 } else { 0.0 };
+            let mut text = String::from("acc,tacho\n");
+            for (n, value) in simulation.channels["middle_0_vertical_g"].iter().enumerate() {
+                writeln!(text, "{value},{}", pulse(n)).unwrap();
+            }
+            workplace.write(&format!("{case}{seed}.csv"), text);
         }
         let fault = ["", "fault = { wheel = \"z2\", kind = \"tooth-breakage\", severity = 0.5 }\n"][case];
         cases += &format!(
             "[[case]]\nlabel = \"case {case}\"\nseverity = {case}\n{fault}\
-             recordings = [\"{case}2/signals.parquet\", \"{case}3/signals.parquet\"]\n"
+             recordings = [\"{case}2.csv\", \"{case}3.csv\"]\n"
         );
     }
-    let rate_hz = json(&workplace, "02/summary.json")["sampling_rate_hz"].as_f64().unwrap();
-    let channel = "middle_0_vertical_g";
-    let experiment = |wheel: &str| {
+    let experiment = |wheel: &str, phase: &str| {
         format!(
-            "scenario = \"gearbox.toml\"\n[signal]\nsampling_rate_hz = {rate_hz}\n{wheel}channel = \"{channel}\"\n\
-             [measured]\nchannel = \"{channel}\"\nrevolutions_per_record = 6\n\
+            "scenario = \"gearbox.toml\"\n[signal]\nsampling_rate_hz = {rate_hz}\n{wheel}channel = \"middle_0_vertical_g\"\n\
+             [measured]\nchannel = \"acc\"\nsampling_rate_hz = {rate_hz}\nrevolutions_per_record = 6\n{phase}\
              [tune]\nwidth_ratio = 1.0\nfault_to_harmonics_ratio = 1.0\ncandidates = 10\n\
              [[tune.key]]\nkey = \"fault.severity\"\nleast = 0.3\nlargest = 0.95\n{cases}"
         )
     };
-    workplace.write("rig.toml", experiment("wheel = \"z2\"\n"));
-    let warned = stderr(&workplace.succeeds(&["tune", "rig.toml", "-o", "out", "-q"]));
-    assert!(!warned.contains("fades"), "{warned}");
-    let tuning = json(&workplace, "out/tuning.json");
-    let found = tuning.pointer("/scenario_keys/fault.severity").and_then(Value::as_f64).unwrap();
-    println!("{found}: {warned}");
-    assert!((found - 0.8).abs() < 0.1, "{tuning:#}");
-    let enhance = ["enhance", "broken.toml", "--tuned", "out/tuned.toml", "-o", "enhanced"];
+    let tachometer =
+        "tachometer_channel = \"tacho\"\npulses_per_revolution = 6\ntachometer_shaft = \"middle\"\n";
+    for (name, phase) in [("constant", ""), ("tachometer", tachometer)] {
+        workplace.write("rig.toml", experiment("wheel = \"z2\"\n", phase));
+        let warned = stderr(&workplace.succeeds(&["tune", "rig.toml", "-o", name, "-q"]));
+        assert!(!warned.contains("fades"), "{warned}");
+        let tuning = json(&workplace, &format!("{name}/tuning.json"));
+        let found = tuning.pointer("/scenario_keys/fault.severity").and_then(Value::as_f64).unwrap();
+        println!("{name}: {found}, {warned}");
+        assert!((found - 0.8).abs() < 0.1, "{name}: {tuning:#}");
+    }
+    let enhance = ["enhance", "broken.toml", "--tuned", "constant/tuned.toml", "-o", "enhanced"];
     workplace.succeeds(&enhance);
     let metadata = String::from_utf8_lossy(&workplace.read("enhanced/enhanced.parquet")).into_owned();
     assert!(metadata.contains("over one revolution of z2"));
+    workplace.write("pair.toml", format!("model = \"contact\"\n{FAST}"));
+    let of_pair = ["enhance", "pair.toml", "--tuned", "constant/tuned.toml", "-o", "enhanced"];
+    workplace.fails(2, &of_pair, &["constant/tuned.toml", "no wheel `z2`", "pinion, gear"]);
 
-    // In ten revolutions of the input the broken tooth meets it at another place each time.
-    workplace.write("input.toml", experiment("wheel = \"z1\"\n"));
-    let warned = stderr(&workplace.succeeds(&["tune", "input.toml", "-o", "input", "-q", "--no-figure"]));
+    let slow = experiment("wheel = \"z2\"\n", "input_shaft_hz = 26.0\n");
+    workplace.write("slow.toml", slow);
+    let warned = stderr(&workplace.succeeds(&["tune", "slow.toml", "-o", "slow", "-q", "--no-figure"]));
     assert!(
-        warned.contains("damaged on z2, but its signals are averaged over revolutions of z1"),
+        warned.contains("shaft input turns at 26.0000 Hz, but in the scenario at 30.0000 Hz"),
         "{warned}"
     );
-    refused(&workplace, &experiment(""), &["signal.wheel", "missing"]);
-    refused(&workplace, &experiment("wheel = \"gear\"\n"), &["\"z1\", \"z2\""]);
+    // In a revolution of the input the broken tooth meets it at another place each time; and what a faster shaft repeats is no fault of z2.
+    let of_input = experiment("wheel = \"z2\"\n", "").replace("wheel = \"z2\", kind", "wheel = \"z1\", kind");
+    for (text, damaged, averaged) in
+        [(experiment("wheel = \"z1\"\n", ""), "z2", "z1"), (of_input, "z1", "z2")]
+    {
+        workplace.write("other.toml", text);
+        let warned = stderr(&workplace.succeeds(&["tune", "other.toml", "-o", "other", "-q", "--no-figure"]));
+        let words = format!(
+            "damaged on {damaged} alone, but its signals are averaged over revolutions of {averaged}"
+        );
+        assert!(warned.contains(&words), "{warned}");
+    }
+    refused(&workplace, &experiment("", ""), &["signal.wheel", "missing"]);
+    refused(&workplace, &experiment("wheel = \"gear\"\n", ""), &["\"z1\", \"z2\""]);
+    workplace.write("gearbox.toml", gearbox_template(Some(GearboxRig::PlanetaryLab)));
+    refused(&workplace, &experiment("wheel = \"z2\"\n", ""), &["planetary set"]);
 }
 
 #[test]

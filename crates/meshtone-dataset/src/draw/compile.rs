@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use meshtone::scenario::{ScenarioNumber, gearbox_sections, sections, split_key};
+use meshtone::scenario::{KeyKind, ScenarioNumber, gearbox_sections, sections, split_key};
 use meshtone_io::scenario_file::ReadScenarioError;
 use meshtone_toml::{ReadResult, TomlError, nearest_name};
 
@@ -14,7 +14,7 @@ use super::{
 use crate::error::DatasetError;
 use crate::expression::{Condition, Expression, derived_names, underlying};
 use crate::plan::{
-    Content, FaultyBase, Level, Plan, Rule, Severity, SplitBy, kinds, list_and_entry, refused,
+    Content, FaultyBase, Level, Plan, Rule, Severity, SplitBy, kinds, list_and_entry, overlap, refused,
 };
 
 /// Keys that cannot be varied, and why.
@@ -63,7 +63,7 @@ impl<'a> Sampler<'a> {
         let classes = classes.collect::<ReadResult<Vec<_>>>()?;
         check_top(content, &classes)?;
         let of_groups = content.top_rules().filter(|(rule, _)| rule.level != Level::Record);
-        let group_rules = in_order(&of_groups.collect::<Vec<Placed>>(), &content.base.numbers())?;
+        let group_rules = in_order(&of_groups.collect::<Vec<Placed>>(), &content.base.settable_numbers())?;
         let level = |condition| level_of(condition, content);
         let constraints = content.constraints.iter().map(|condition| (level(condition), condition)).collect();
         let shift_levels: Vec<Vec<Level>> =
@@ -165,8 +165,8 @@ fn check_keys(rules: &[Placed], known: &[ScenarioNumber], content: &Content, cla
             if let Some((_, why)) = OWN.iter().find(|(own, _)| own == key) {
                 return Err(refuse(key, format!("cannot be varied: {why}")));
             }
-            if let Some((_, other)) = seen.iter().find(|(seen, _)| seen == key) {
-                return Err(refuse(key, format!("`{key}` is varied by {other} too; must be varied once")));
+            if let Some((seen, other)) = seen.iter().find(|(seen, _)| overlap(seen, key)) {
+                return Err(refuse(key, format!("`{seen}` is varied by {other} too; must be varied once")));
             }
             seen.push((key, place));
             if is_of_plan(key) {
@@ -225,7 +225,7 @@ fn unknown(
     if fault_of_severity(key, faults.len()).is_some() {
         return error.with_help("write the fault with severity = … in place of its sizes");
     }
-    if let Some(default) = computed_default(key, content) {
+    if let Some(default) = computed_default(key, known, content) {
         return error
             .with_help(format!("it is left out (default: {default}); state it in the scenario to vary it"));
     }
@@ -239,13 +239,16 @@ fn unknown(
     })
 }
 
-/// What is taken where a key that may have a number is left out, in words.
-fn computed_default(key: &str, content: &Content) -> Option<String> {
+/// What is taken in place of a number that is left out of a section that is there, in words.
+fn computed_default(key: &str, known: &[ScenarioNumber], content: &Content) -> Option<String> {
     let (section, key) = split_key(key);
+    if section == "fault" || !keys(known).any(|known| split_key(known).0 == section) {
+        return None;
+    }
     let described = if content.base.rig().is_some() { sections() } else { gearbox_sections() };
     let of_section = described.into_iter().filter(|of| of.name == list_and_entry(section).0);
-    let found = of_section.flat_map(|of| of.keys).find(|of| Some(of.key.as_str()) == key)?;
-    (!found.default.is_empty()).then_some(found.default)
+    let number = of_section.flat_map(|of| of.keys).find(|of| Some(of.key.as_str()) == key)?;
+    matches!(number.kind, KeyKind::Number | KeyKind::Whole).then_some(number.default)
 }
 
 /// Checks that every rule at the top concerns some class.
@@ -258,7 +261,7 @@ fn check_top(content: &Content, classes: &[ClassRules]) -> ReadResult<()> {
         }
         let is_nowhere = |key: &&String| !classes.iter().any(|class| has(class, key));
         let key = rule_keys.iter().find(is_nowhere).unwrap_or(&rule_keys[0]);
-        let mut known = content.base.numbers();
+        let mut known = content.base.settable_numbers();
         known.extend(classes.iter().flat_map(|class| class.base.numbers()));
         return Err(unknown(&placed, key, &known, content, None));
     }

@@ -3,6 +3,8 @@
 use std::cell::OnceCell;
 use std::collections::BTreeMap;
 
+use meshtone::scenario::key_of_both_wheels;
+
 use crate::expression::derived;
 use crate::plan::FaultyBase;
 
@@ -35,8 +37,9 @@ impl<'a> Values<'a> {
         if key == SEVERITY {
             return self.severity;
         }
-        let drawn = self.drawn.iter().find(|(drawn, _)| drawn == key).map(|(_, value)| *value);
-        drawn
+        let drawn = |key: &str| self.drawn.iter().find(|(drawn, _)| drawn == key).map(|(_, value)| *value);
+        drawn(key)
+            .or_else(|| drawn(&key_of_both_wheels(key)?))
             .or_else(|| self.numbers.get(key).copied())
             .or_else(|| derived(key)?.value(&|key| self.number(key)))
             .or_else(|| self.severity_by_sizes(key))

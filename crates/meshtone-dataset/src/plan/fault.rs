@@ -140,7 +140,7 @@ impl FaultyBase {
 
     /// All numbers of the scenario, by the plan's keys.
     pub fn numbers(&self) -> Vec<ScenarioNumber> {
-        let mut numbers = self.numbered.scenario().numbers();
+        let mut numbers = self.numbered.scenario().settable_numbers();
         for number in &mut numbers {
             number.key = renamed(&number.key, self.sections.iter().map(|[plan, scenario]| [scenario, plan]));
         }

@@ -29,6 +29,7 @@ pub(crate) use fault::{FaultPlace, FaultyBase, with_faults};
 pub use growth::{Growth, Law, RunPosition, SpreadOver};
 pub use keep::{Keep, MOST_SHARD_RECORDS, OverAngle};
 pub use question::Question;
+pub(crate) use rule::overlap;
 pub use rule::{Distribution, Level, Rule};
 pub use split::{Shift, SplitBy, Splits};
 pub use variation::Variation;

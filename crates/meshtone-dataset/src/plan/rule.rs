@@ -1,5 +1,7 @@
 //! Rules that say how keys vary.
 
+use meshtone::scenario::key_of_both_wheels;
+
 use crate::expression::Expression;
 use crate::sampling::{normal_distribution, normal_quantile};
 
@@ -31,10 +33,16 @@ pub struct Rule {
     pub plus: Option<Expression>,
 }
 
+/// Whether one key is the other, or has a part of its number: that of one wheel of a pair, of the key of both.
+pub(crate) fn overlap(key: &str, other: &str) -> bool {
+    let is_part = |key: &str, of: &str| key_of_both_wheels(key).as_deref() == Some(of);
+    key == other || is_part(key, other) || is_part(other, key)
+}
+
 impl Rule {
-    /// Returns whether the rule varies a key.
+    /// Returns whether the rule varies a key, or a part of its number.
     pub(crate) fn varies(&self, key: &str) -> bool {
-        self.keys.iter().any(|own| own == key)
+        self.keys.iter().any(|own| overlap(own, key))
     }
 }
 

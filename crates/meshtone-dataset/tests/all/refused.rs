@@ -156,6 +156,13 @@ fn keys_that_are_none() {
     refused_with("[keep]", teeth, &["is a whole number", "choice or grid"]);
     let backlash = "[[vary]]\nkey = \"gears.backlash_mm\"\nuniform = [0.1, 0.2]\n[keep]";
     refused_with("[keep]", backlash, &["it is left out (default: ⅔", "state it in the scenario"]);
+    // A name is no number that could be stated.
+    let hand = "[[vary]]\nkey = \"gears.hand\"\nuniform = [0.1, 0.2]\n[keep]";
+    refused_with("[keep]", hand, &["`gears.hand` is no number of the scenario", "did you mean"]);
+    // A chamfer of both wheels and one of either would decide the same number.
+    let both = |key: &str| format!("[[vary]]\nkey = \"gears.{key}.length_mm\"\nuniform = [0.8, 0.9]\n");
+    let twice = [both("flank_relief"), both("gear_flank_relief"), "[keep]".to_owned()].concat();
+    refused_with("[keep]", &twice, &["`gears.flank_relief.length_mm` is varied by", "must be varied once"]);
     refused_with(
         "uniform = [30.0, 60.0]",
         "unifrom = [30.0, 60.0]",

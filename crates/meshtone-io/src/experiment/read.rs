@@ -84,6 +84,12 @@ impl Reading<'_> {
 
     fn experiment(&mut self, root: &TomlTable<'_>) -> ReadResult<Experiment> {
         let base = self.scenario(root)?;
+        if !base.planetary().is_empty() {
+            let problem = HybridError::Planetary.to_string();
+            return Err(root
+                .error("scenario", problem)
+                .with_help("name the scenario of a pair or a gearbox"));
+        }
         let train = GearTrain::of_scenario(&base)?;
         let (chain, wheel) = root.table_or_empty("signal")?.read(|table| signal(table, &base, &train))?;
         let listed = root.required("case", "the cases, [[case]] each, the healthy one first")?;
@@ -237,7 +243,7 @@ fn averaged_wheel(table: &TomlTable<'_>, base: &Scenario, train: &GearTrain) -> 
     if base.rig().is_some() && table.optional("wheel").is_none() {
         return Ok(WheelName::default() as usize);
     }
-    table.required("wheel", "the wheel over whose revolutions is averaged")?.choice(&names)
+    table.required("wheel", "the wheel over whose revolutions the signals are averaged")?.choice(&names)
 }
 
 struct Tune {

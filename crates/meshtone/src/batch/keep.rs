@@ -219,12 +219,11 @@ impl Recorder for SignalRecorder {
     }
 }
 
-/// As many outputs are kept as they are.
-impl<const N: usize> Recorder for [Vec<f64>; N] {
+/// All outputs are kept as they are.
+impl Recorder for Vec<Vec<f64>> {
     fn record(&mut self, block: &Block) {
-        for (index, values) in self.iter_mut().enumerate() {
-            values.extend_from_slice(block.output(index));
-        }
+        self.resize_with(block.outputs().len(), Vec::new);
+        self.iter_mut().zip(block.outputs()).for_each(|(all, block)| all.extend_from_slice(block));
     }
 }
 

@@ -7,7 +7,7 @@ use std::sync::OnceLock;
 use toml::de::{DeTable, DeValue};
 use toml::{Spanned, Value};
 
-use super::{Scenario, ScenarioError, short};
+use super::{Scenario, ScenarioError};
 use crate::wheel::WheelName;
 
 /// A number of a scenario.
@@ -21,6 +21,9 @@ pub struct ScenarioNumber {
     /// Only whole numbers are allowed.
     pub whole: bool,
 }
+
+/// The keys of `[gears]` of which either wheel may have its own.
+const OF_EITHER: [&str; 2] = ["flank_relief", "tip_chamfer_mm"];
 
 /// The line before the keys of a pair's teeth.
 const GEARS: &str = "[gears]\n";
@@ -48,19 +51,20 @@ impl NumberPlace {
     /// The places of the same number of either wheel alone, where this is one that both wheels of a pair have.
     ///
     /// # Arguments
-    /// * `of_wheels` - the keys of `[gears]` that are of one wheel alone
-    /// * `at` - (bytes) where the section's first line starts
-    fn of_each_wheel(&self, of_wheels: &[&str], at: usize) -> Vec<Self> {
-        let Some(shared) = self.number.key.strip_prefix("gears.") else { return Vec::new() };
-        let own = WheelName::BOTH.map(|wheel| format!("{}_{shared}", wheel.name()));
-        let is_key = |line: &String| of_wheels.contains(&split_key(line).0);
-        let place = |line: String| Self {
-            number: ScenarioNumber { key: format!("gears.{line}"), ..self.number.clone() },
-            at: at..at,
-            is_of_list: self.is_of_list,
-            line: Some(line),
+    /// * `at` - (bytes) where the first line of `[gears]` starts
+    fn of_each_wheel(&self, at: usize) -> Vec<Self> {
+        let shared = self.number.key.strip_prefix("gears.");
+        let shared = shared.filter(|shared| OF_EITHER.contains(&split_key(shared).0));
+        let place = |(wheel, shared): (WheelName, &str)| {
+            let line = format!("{}_{shared}", wheel.name());
+            let number = ScenarioNumber { key: format!("gears.{line}"), ..self.number.clone() };
+            Self { number, at: at..at, is_of_list: self.is_of_list, line: Some(line) }
         };
-        own.into_iter().filter(is_key).map(place).collect()
+        shared
+            .into_iter()
+            .flat_map(|shared| WheelName::BOTH.map(|wheel| (wheel, shared)))
+            .map(place)
+            .collect()
     }
 }
 
@@ -73,12 +77,8 @@ impl NumberedText {
         let root = DeTable::parse(&text).map_err(|error| ScenarioError::new("", "", error.message()))?;
         places_in(root.get_ref(), "", &mut places);
         if let Some(header) = text.find(GEARS) {
-            let rows = short::gears().rows;
-            let names: Vec<&str> = rows.iter().map(|row| row.head.name).collect();
-            let is_stated = |key: &str| places.iter().any(|place| place.number.key == key);
-            let own = places.iter().flat_map(|place| place.of_each_wheel(&names, header + GEARS.len()));
-            let own: Vec<_> = own.filter(|place| !is_stated(&place.number.key)).collect();
-            places.extend(own);
+            let own = places.iter().flat_map(|place| place.of_each_wheel(header + GEARS.len()));
+            places.extend(own.collect::<Vec<_>>());
         }
         Ok(Self { text, places })
     }
@@ -347,8 +347,7 @@ impl Scenario {
         changed.validate().map(|_| changed)
     }
 
-    /// Every key of the scenario file at which this scenario has a single number, defaults included; of a number that both wheels of a
-    /// pair have, such as a chamfer, also the keys of each wheel alone.
+    /// Every key of the scenario file at which this scenario has a single number, defaults included.
     ///
     /// ```
     /// use meshtone::scenario::{GearPair, Scenario};
@@ -358,9 +357,38 @@ impl Scenario {
     /// assert!(teeth.whole && teeth.value == 17.0);
     /// ```
     pub fn numbers(&self) -> Vec<ScenarioNumber> {
-        let places = NumberedText::new(self).map_or_else(|_| Vec::new(), |text| text.places);
-        places.into_iter().filter(|place| !place.is_of_list).map(|place| place.number).collect()
+        self.single_numbers(|place| place.line.is_none())
     }
+
+    /// Every key at which a single number can be set: those of [`Self::numbers`], and of a number that both wheels of a pair have, such
+    /// as a chamfer, those of each wheel alone.
+    pub fn settable_numbers(&self) -> Vec<ScenarioNumber> {
+        self.single_numbers(|_| true)
+    }
+
+    fn single_numbers(&self, is_wanted: fn(&NumberPlace) -> bool) -> Vec<ScenarioNumber> {
+        let places = NumberedText::new(self).map_or_else(|_| Vec::new(), |text| text.places);
+        let single = places.into_iter().filter(|place| !place.is_of_list && is_wanted(place));
+        single.map(|place| place.number).collect()
+    }
+}
+
+/// The key of both wheels of a pair of which a key of one of them is a part: `gears.tip_chamfer_mm` of `gears.pinion_tip_chamfer_mm`.
+///
+/// # Arguments
+/// * `key` - dotted
+///
+/// ```
+/// use meshtone::scenario::key_of_both_wheels;
+///
+/// assert_eq!(key_of_both_wheels("gears.gear_flank_relief.amount_um").as_deref(), Some("gears.flank_relief.amount_um"));
+/// assert_eq!(key_of_both_wheels("gears.pinion_teeth"), None);
+/// ```
+pub fn key_of_both_wheels(key: &str) -> Option<String> {
+    let of_gears = key.strip_prefix("gears.")?;
+    let shared =
+        WheelName::BOTH.iter().find_map(|wheel| of_gears.strip_prefix(wheel.name())?.strip_prefix('_'))?;
+    OF_EITHER.contains(&split_key(shared).0).then(|| format!("gears.{shared}"))
 }
 
 /// The first segment of a dotted key, and the rest. A name in brackets may have dots.

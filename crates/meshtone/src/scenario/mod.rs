@@ -45,7 +45,7 @@ pub use crate::wheel::{
     BodyRotation, ERROR_POINTS, EndRelief, FlankRelief, FoundationCoefficients, Gears, Hand, Material,
     MaterialConstants, ProfileErrors, Quality, ReliefShape, WheelDeviations, WheelName,
 };
-pub use edit::{NumberedScenario, ScenarioNumber, names_or_numbers, split_key};
+pub use edit::{NumberedScenario, ScenarioNumber, key_of_both_wheels, names_or_numbers, split_key};
 pub use from_toml::{ScenarioFiles, line_of_key};
 pub use gearbox_template::{GearboxRig, gearbox_template, gearbox_template_of_all_keys};
 pub(crate) use layout::entry_key;

@@ -422,5 +422,5 @@ impl Structure {
 pub(super) fn refused_as_pair() -> ScenarioError {
     let problem = "is of a gearbox, and one pair of gears, [gears], is expected here";
     ScenarioError::new("mesh", "", problem)
-        .with_help("the models published and linear, and `meshtone wheels`, accept one pair only")
+        .with_help("give a scenario with [gears]; the models published and linear, and `meshtone wheels`, accept one pair only")
 }

@@ -38,7 +38,7 @@ impl<'a> Block<'a> {
     }
 
     /// The samples of all outputs.
-    pub(super) fn outputs(&self) -> &[Vec<f64>] {
+    pub(crate) fn outputs(&self) -> &[Vec<f64>] {
         self.outputs
     }
 

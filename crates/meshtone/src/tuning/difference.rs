@@ -7,7 +7,8 @@ use crate::model::Model;
 use crate::scenario::Scenario;
 use crate::sensor::{Channel, ChannelKind};
 use crate::signal::{
-    AngularSettings, ChainSettings, GearTrain, Interpolation, Record, SeparationSettings, TrainSettings,
+    AngularSettings, ChainSettings, GearTrain, Interpolation, Record, SeparationSettings, ShaftPhase,
+    SignalError, TrainSettings, points_per_revolution,
 };
 use crate::simulate::Stages;
 use crate::solver::Output;
@@ -64,12 +65,18 @@ impl DifferenceChain {
         pinion_speed_hz: &[f64],
     ) -> Result<Record, HybridError> {
         let rate_hz = self.sampling_rate_hz.min(stages.time.sampling_rate_hz);
+        let wheel = self.wheel_of(&stages.scenario)?;
         let train = GearTrain::of_stages(stages);
-        let wheel = self.wheel_of(&train)?;
         let angular = Self::angular_settings(stages.scenario.model);
         let Some(side) = stages.scenario.rig().and(WheelName::BOTH.get(wheel)) else {
-            let separation = self.separation.clone().unwrap_or_else(|| SeparationSettings::new(1));
-            let settings = TrainSettings { angular, separation, revolutions: None };
+            let ratio = train.speed_ratio(train.wheels[wheel].shaft, train.input());
+            let shaft_hz = stages.scenario.operation.pinion_speed_hz * ratio.value();
+            let points_per_revolution = Some(self.points_per_revolution(shaft_hz)?);
+            let settings = TrainSettings {
+                angular: AngularSettings { points_per_revolution, ..angular },
+                separation: self.separation.clone().unwrap_or_else(|| SeparationSettings::new(1)),
+                revolutions: None,
+            };
             return Ok(crate::trace::train_record(stages, (&train, wheel), signal, rate_hz, &settings)?);
         };
         let separation = self.separation.as_ref().map(|settings| train.separation(wheel, settings));
@@ -77,19 +84,33 @@ impl DifferenceChain {
         Ok(crate::trace::wheel_record(stages, *side, signal, pinion_speed_hz, rate_hz, settings)?)
     }
 
-    /// The number of the wheel in a machine.
+    /// The points of a revolution, simulated or recorded, of a shaft that turns at its nominal speed.
     ///
     /// # Arguments
-    /// * `train` - the machine
+    /// * `shaft_hz` - (Hz) that speed
     ///
     /// # Errors
-    /// It has no wheel of this name.
-    pub fn wheel_of(&self, train: &GearTrain) -> Result<usize, HybridError> {
-        let found = train.wheels.iter().position(|wheel| wheel.name == self.wheel);
-        found.ok_or_else(|| HybridError::NoSuchWheel {
-            wheel: self.wheel.clone(),
-            known: train.wheels.iter().map(|wheel| wheel.name.as_str()).collect::<Vec<_>>().join(", "),
-        })
+    /// A speed or a rate that is not above 0.
+    pub fn points_per_revolution(&self, shaft_hz: f64) -> Result<usize, SignalError> {
+        let samples = (3.0 * self.sampling_rate_hz / shaft_hz).ceil() as usize;
+        let three = ShaftPhase::constant(shaft_hz, self.sampling_rate_hz, samples)?;
+        Ok(points_per_revolution(&three))
+    }
+
+    /// The number of the wheel in a scenario.
+    ///
+    /// # Arguments
+    /// * `scenario` - a valid one
+    ///
+    /// # Errors
+    /// It has no wheel of this name, or a planetary set, whose wheels pass the sensor or turn about moving axes.
+    pub fn wheel_of(&self, scenario: &Scenario) -> Result<usize, HybridError> {
+        if !scenario.planetary().is_empty() {
+            return Err(HybridError::Planetary);
+        }
+        let names = scenario.wheel_names();
+        let found = names.iter().position(|name| *name == self.wheel);
+        found.ok_or_else(|| HybridError::NoSuchWheel { wheel: self.wheel.clone(), known: names.join(", ") })
     }
 }
 
@@ -100,7 +121,8 @@ impl DifferenceChain {
 /// * `chain` - how a difference signal is taken
 ///
 /// # Errors
-/// The first scenario's that cannot be simulated or has no difference signal.
+/// Those of [`DifferenceChain::wheel_of`], before anything is simulated; the first scenario's that cannot be simulated or has no
+/// difference signal.
 ///
 /// ```
 /// use meshtone::tuning::{DifferenceChain, difference_signals};
@@ -117,6 +139,7 @@ pub fn difference_signals(
     scenarios: Vec<Scenario>,
     chain: &DifferenceChain,
 ) -> Result<Vec<Vec<f64>>, HybridError> {
+    scenarios.iter().try_for_each(|scenario| chain.wheel_of(scenario).map(drop))?;
     let mut signals = Vec::with_capacity(scenarios.len());
     simulate_many(scenarios, &KeepDifference(chain), &Control::default(), |_, kept| signals.push(kept));
     signals.into_iter().map(|kept| kept?).collect()
@@ -127,22 +150,22 @@ pub(super) struct KeepDifference<'a>(pub(super) &'a DifferenceChain);
 
 impl Keep for KeepDifference<'_> {
     // The channel, and of a pair the pinion's speed.
-    type Recorder = [Vec<f64>; 2];
+    type Recorder = Vec<Vec<f64>>;
     type Kept = Result<Vec<f64>, HybridError>;
 
     fn outputs(&self, scenario: &Scenario) -> Result<Vec<Output>, ScenarioError> {
         let channel = self.0.channel.output_of(scenario)?;
-        // How shafts of beams turn follows from the motor's motion alone: the second output is not read.
-        let speed =
-            scenario.rig().map_or_else(|| channel.clone(), |_| ChannelKind::PinionShaftSpeed.output());
-        Ok(vec![channel, speed])
+        let speed = scenario.rig().map(|_| ChannelKind::PinionShaftSpeed.output());
+        Ok([channel].into_iter().chain(speed).collect())
     }
 
     fn recorder(&self, _: &Stages) -> Self::Recorder {
         Self::Recorder::default()
     }
 
-    fn keep(&self, _: usize, stages: Stages, [motion, pinion_speed_hz]: Self::Recorder) -> Self::Kept {
+    fn keep(&self, _: usize, stages: Stages, recorded: Self::Recorder) -> Self::Kept {
+        let mut recorded = recorded.into_iter();
+        let [motion, pinion_speed_hz] = [(); 2].map(|()| recorded.next().unwrap_or_default());
         let channel = stages.shown(&self.0.channel, motion);
         Ok(self.0.record(&stages, &channel, &pinion_speed_hz)?.parts.difference)
     }

@@ -28,13 +28,16 @@ pub enum HybridError {
         values: usize,
     },
     /// The wheel over whose revolutions signals are averaged is none of the machine's.
-    #[error("there is no wheel `{wheel}`; there are {known}")]
+    #[error("signal.wheel: there is no wheel `{wheel}`; it must be one of {known}")]
     NoSuchWheel {
         /// Its name.
         wheel: String,
         /// The names of those that there are.
         known: String,
     },
+    /// A planetary set, whose wheels pass the sensor or turn about moving axes.
+    #[error("the scenario has a planetary set; tuning is of pairs and of gearboxes without one")]
+    Planetary,
     /// A value is not a finite number.
     #[error("value {index} of {what} is not a finite number")]
     NotANumber {

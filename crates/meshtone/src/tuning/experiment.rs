@@ -119,7 +119,7 @@ impl Experiment {
     ///
     /// # Errors
     /// Fewer than two cases; a first case that has a fault, or another that has none; other cases than were
-    /// measured; bounds that hold nothing; no candidates or more than [`MOST_CANDIDATES`]; as of [`Self::check_key`].
+    /// measured; those of [`DifferenceChain::wheel_of`]; bounds that hold nothing; no candidates or more than [`MOST_CANDIDATES`]; as of [`Self::check_key`].
     pub fn check(&self) -> Result<(), HybridError> {
         let (simulated, measured) = (self.cases.len(), self.measured.cases());
         if simulated < 2 || simulated != measured {
@@ -130,6 +130,7 @@ impl Experiment {
                 return Err(HybridError::HealthyCase { case, label: label.clone() });
             }
         }
+        self.chain.wheel_of(&self.base)?;
         self.bounds.check()?;
         if !self.keys.is_empty() && !(1..=MOST_CANDIDATES).contains(&self.candidates) {
             return Err(HybridError::Candidates { candidates: self.candidates, most: MOST_CANDIDATES });

@@ -8,7 +8,7 @@ use super::simulations::Simulations;
 use super::tune::TuningInputs;
 use super::{Case, Enhancement, Experiment, HybridError, SimulatedCases, Tuning, TuningWarning, tune};
 use crate::scenario::Scenario;
-use crate::signal::GearTrain;
+use crate::signal::{GearTrain, SeparationSettings};
 
 /// Result of an experiment.
 #[derive(Debug, Clone)]
@@ -101,22 +101,30 @@ pub fn run_experiment(
 
 /// Cases whose damage meets another place of the averaged wheel in each of its revolutions.
 fn damaged_on_other_shafts(experiment: &Experiment) -> Vec<TuningWarning> {
-    let averaged = &experiment.chain.wheel;
-    let Ok(train) = GearTrain::of_scenario(&experiment.base) else { return Vec::new() };
-    let shaft_of = |name: &str| train.wheels.iter().find(|wheel| wheel.name == name).map(|wheel| wheel.shaft);
-    // Where the other shaft turns a whole number of times meanwhile, its damage is averaged as well.
-    let fades = |damaged: &str| match [damaged, averaged].map(shaft_of) {
-        [Some(damaged), Some(averaged)] => train.speed_ratio(damaged, averaged).denominator != 1,
-        _ => false,
+    let (base, averaged) = (&experiment.base, &experiment.chain.wheel);
+    let Ok(train) = GearTrain::of_scenario(base) else { return Vec::new() };
+    let wheel_of = |name: &str| train.wheels.iter().position(|wheel| wheel.name == name);
+    let Some(number) = wheel_of(averaged) else { return Vec::new() };
+    let taken_away = train.separation(number, &SeparationSettings::new(1)).other_orders;
+    let fades = |damaged: &str| {
+        let Some(damaged) = wheel_of(damaged) else { return false };
+        let turns = train.speed_ratio(train.wheels[damaged].shaft, train.wheels[number].shaft);
+        // Where the other shaft turns a whole number of times meanwhile, its damage is averaged as well, unless its orders are taken away.
+        turns.denominator != 1 || taken_away.iter().any(|order| turns.numerator % *order as i64 == 0)
     };
     let faulty = experiment.cases.iter().enumerate().skip(1);
     let fading = faulty.filter(|(_, case)| case.faults.iter().all(|fault| fades(&fault.wheel)));
     let warning = |(case, of): (usize, &Case)| {
-        let [damaged, averaged] =
-            [&of.faults.first()?.wheel, averaged].map(|wheel| experiment.base.wheel_in_words(wheel));
-        Some(TuningWarning::OtherWheel { case, damaged, averaged })
+        let mut damaged: Vec<String> =
+            of.faults.iter().map(|fault| base.wheel_in_words(&fault.wheel)).collect();
+        damaged.dedup();
+        TuningWarning::OtherWheel {
+            case,
+            damaged: damaged.join(" and "),
+            averaged: base.wheel_in_words(averaged),
+        }
     };
-    fading.filter_map(warning).collect()
+    fading.map(warning).collect()
 }
 
 /// Warns where there are no more measurements than tuned numbers.

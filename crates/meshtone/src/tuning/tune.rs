@@ -140,13 +140,13 @@ pub enum TuningWarning {
     },
     /// The faults of a case are on other shafts than that over whose revolutions the signals are averaged.
     #[error(
-        "case {case} is damaged on {damaged}, but its signals are averaged over revolutions of {averaged}, in which \
+        "case {case} is damaged on {damaged} alone, but its signals are averaged over revolutions of {averaged}, in which \
          that damage fades"
     )]
     OtherWheel {
         /// Number of the case.
         case: usize,
-        /// The damaged wheel, in words.
+        /// The damaged wheels, in words.
         damaged: String,
         /// The wheel that is averaged over, in words.
         averaged: String,

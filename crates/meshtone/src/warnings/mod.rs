@@ -14,6 +14,7 @@ pub use step_error::StepJudgement;
 use crate::checks::{WindowSums, transient_part};
 use crate::error::{ScenarioError, ScenarioWarning, WarningKind};
 use crate::machine::{Shaft, WheelBody};
+use crate::mesh::Mesh;
 use crate::operation::{Operation, TimeGrid};
 use crate::scenario::{MemoryLimit, Scenario, SensorPlace, SetLayout, entry_key};
 use crate::simulate::{Stages, stages_within};
@@ -60,7 +61,7 @@ pub fn stages_and_warnings(
 impl Stages {
     /// Warnings about stages that can be simulated: those of [`Scenario::validate`], keys that the model ignores, slices that the faces
     /// are not cut into, wheels of a rig whose accelerations, or whose supports', cancel in the channels, meshes and sensors above the highest
-    /// mode that is simulated, a load that would break teeth or is at one end of a face, under a linear mesh places at which none meet, and a mesh frequency that meets a natural
+    /// mode that is simulated, a load that would break teeth or is at one end of a face, under a linear mesh places at which none meet, chamfers that leave too little of the path, and a mesh frequency that meets a natural
     /// frequency of shafts of beams.
     pub fn warnings(&self) -> Vec<ScenarioWarning> {
         let unused = self.meshes.iter().enumerate().filter_map(|(number, mesh)| {
@@ -194,20 +195,24 @@ impl Stages {
         })
     }
 
-    /// Sound meshes whose tips' chamfers and shortening leave less than one pair of teeth on the path of contact at times.
-    fn short_paths(&self) -> impl Iterator<Item = ScenarioWarning> {
-        let meshes = self.meshes.iter().enumerate().filter(|_| self.teeth_part());
-        meshes.filter_map(|(number, mesh)| {
+    /// Meshes whose tips' chamfers and shortening leave less than one pair of sound teeth on the path of contact at times.
+    fn short_paths(&self) -> Vec<ScenarioWarning> {
+        let there =
+            if self.teeth_part() { "only corners of tips touch" } else { "a linear mesh has no stiffness" };
+        let of_mesh = |(number, mesh): (usize, &Mesh)| {
             let ratio = mesh.contact_ratio + mesh.face.overlap().abs();
-            let gears = self.scenario.named_gears(&self.layout, number);
-            (ratio < 1.0).then(|| {
-                let [chamfer, shortening] = gears.shorteners();
-                let message = format!(
-                    "tips leave a contact ratio of {ratio:.2}, so that at times only their corners touch; lower it or {shortening}"
-                );
-                ScenarioWarning::new(WarningKind::NoContact, chamfer, message)
-            })
-        })
+            let keys = self.scenario.named_gears(&self.layout, number).shorteners();
+            let key = keys.first().filter(|_| ratio < 1.0)?;
+            let message = format!(
+                "the ends of the teeth leave a contact ratio of {ratio:.2}, so that at times {there}; lower {}",
+                keys.join(" or ")
+            );
+            Some(ScenarioWarning::new(WarningKind::NoContact, key, message))
+        };
+        let mut warnings: Vec<_> = self.meshes.iter().enumerate().filter_map(of_mesh).collect();
+        // The meshes of a planetary set are alike.
+        warnings.dedup();
+        warnings
     }
 
     /// (-) Part of the starting transient that is left where the kept signal starts, by the slowest active mode's decay.

@@ -94,12 +94,14 @@ impl<'a> NamedGears<'a> {
         }
     }
 
-    /// The keys that shorten the path of contact: that of the larger chamfer, and that of the active profiles.
-    pub(crate) fn shorteners(&self) -> [String; 2] {
+    /// The keys that shorten the path of contact, as far as they do: that of the larger chamfer, and that of the active profiles.
+    pub(crate) fn shorteners(&self) -> Vec<String> {
         let [pinion_mm, gear_mm] = WheelName::BOTH.map(|wheel| self.chamfer_mm(wheel));
         let larger = if pinion_mm < gear_mm { WheelName::Gear } else { WheelName::Pinion };
-        let chamfer = self.key_of_each(larger, "tip_chamfer_mm", &self.tip_chamfer_mm);
-        [chamfer, self.key("active_profile_shortening")]
+        let chamfer = (pinion_mm.max(gear_mm) > 0.0)
+            .then(|| self.key_of_each(larger, "tip_chamfer_mm", &self.tip_chamfer_mm));
+        let is_shortened = self.active_profile_shortening.iter().any(|shortening| *shortening > 0.0);
+        chamfer.into_iter().chain(is_shortened.then(|| self.key("active_profile_shortening"))).collect()
     }
 
     /// The key of the pair as a whole: `gears`, `mesh[0].wheels`.

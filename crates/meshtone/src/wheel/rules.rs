@@ -130,7 +130,7 @@ fn reliefs_cut_off(gears: &NamedGears) -> Vec<ScenarioWarning> {
         let [chamfer_mm, relief_mm] = gears.tip_lengths_mm(wheel);
         (relief_mm > 0.0 && relief_mm <= chamfer_mm).then(|| {
             let message = format!(
-                "has no effect: {relief_mm} mm are relieved from the tip inwards, and the tip chamfer takes {chamfer_mm:.2} mm; lengthen \
+                "has no effect: {relief_mm:.2} mm are relieved from the tip inwards, and the tip chamfer takes {chamfer_mm:.2} mm; lengthen \
                  the relief"
             );
             let key = gears.key_of_each(wheel, "flank_relief.length_mm", &gears.flank_relief);

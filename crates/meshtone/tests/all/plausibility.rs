@@ -108,6 +108,17 @@ fn chamfers_that_take_the_path_or_the_relief_are_told() {
     let warnings = meshtone::stages(&chamfered).unwrap().warnings();
     let told = warnings.iter().find(|warning| warning.kind == WarningKind::NoContact).unwrap();
     assert_eq!(told.key, "gears.gear_tip_chamfer_mm");
+    assert!(told.message.contains("only corners of tips touch"), "{told}");
+    let mut linear = chamfered.clone();
+    linear.model = Model::Linear;
+    let warnings = meshtone::stages(&linear).unwrap().warnings();
+    let told = warnings.iter().find(|warning| warning.kind == WarningKind::NoContact).unwrap();
+    assert!(
+        told.message.ends_with(
+            "has no stiffness; lower gears.gear_tip_chamfer_mm or gears.active_profile_shortening"
+        ),
+        "{told}"
+    );
     chamfered.wheels.iter_mut().for_each(|wheel| wheel.tip_chamfer_mm = Some(2.9));
     let refused = meshtone::stages(&chamfered).unwrap_err();
     assert!(refused.help.unwrap().contains("gears.tip_chamfer_mm"));

@@ -4,7 +4,8 @@
 use crate::support::{REQUIRED, appended, assert_refused, gears, replaced};
 use meshtone::scenario::{
     Damage, DestructionLine, Fault, FileProblem, MissingTooth, Model, PartialFace, PitCircle, Profile,
-    ProfileErrors, RootCrack, Scenario, ScenarioFiles, ThroughFace, ToothBreakage, ToothDestruction, Wear,
+    ProfileErrors, RootCrack, Scenario, ScenarioFiles, ScenarioNumber, ThroughFace, ToothBreakage,
+    ToothDestruction, Wear,
 };
 use meshtone::wheel::ErrorTable;
 
@@ -84,6 +85,9 @@ fn the_wheels_of_a_pair_may_have_tips_of_their_own() {
         chamfers(&alike.with_number("gears.gear_tip_chamfer_mm", 0.2).unwrap()),
         [Some(0.5), Some(0.2)]
     );
+    let listed =
+        |numbers: Vec<ScenarioNumber>| numbers.iter().filter(|of| of.key.contains("chamfer")).count();
+    assert_eq!((listed(alike.numbers()), listed(alike.settable_numbers())), (1, 3));
     let numbers = [("gears.gear_flank_relief.amount_um", 20.0), ("gears.flank_relief.length_mm", 2.0)];
     assert_eq!(reliefs(&alike.with_numbers(&numbers).unwrap()), [[2.0, 0.0], [2.0, 20.0]]);
     assert!(alike.with_number("gears.gear_face_width_mm", 20.0).is_err());

@@ -431,6 +431,9 @@ fn gearboxes_sound_like_a_recorded_one() {
         let two = heard(60.0, [0.8, 0.4], housings.clone()).unwrap();
         let more = heard(90.0, [0.8, 0.0], housings.clone()).unwrap();
         println!("housings {housings:?}\none ripple {one:?}\ntwo {two:?}\ntorque x 1.5 {more:?}");
+        let power = |of: &Heard| of.remainder_rms.powi(2) * of.line_share / (1.0 - of.line_share);
+        println!("lines: torque to the power {:.2}", (power(&more) / power(&one)).ln() / 1.5f64.ln());
+        assert!((1.4..1.7).contains(&(power(&more) / power(&one))));
         (one, two, more)
     });
     for (one, two, more) in sets {

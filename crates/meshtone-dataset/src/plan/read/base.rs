@@ -47,11 +47,16 @@ pub(super) fn read(root: &TomlTable<'_>, reading: &mut Reading) -> ReadResult<Sc
 /// The base with the numbers that were tuned.
 pub(super) fn tuned(base: &Scenario, tuned: &Tuned, value: &TomlValue<'_>) -> ReadResult<Scenario> {
     if base.rig().is_none() {
-        let error = value.error("is of one pair of gears, and the scenario is a gearbox");
-        return Err(error.with_help("leave it out: tuning knows one pair"));
+        let error = value.error("is given, but data sets do not enhance the signals of gearboxes");
+        return Err(error.with_help("leave it out, or make signals with `meshtone enhance`"));
     }
     if let Some(warning) = tuned.warning_for(base) {
         return Err(value.error(warning));
+    }
+    if !base.wheel_names().contains(&tuned.wheel.as_str()) {
+        return Err(
+            value.error(format!("averages over `{}`, which is no wheel of the scenario", tuned.wheel))
+        );
     }
     tuned.apply(base).map_err(|error| value.error(error.to_string()))
 }

@@ -184,7 +184,8 @@ fn rules(
     let mut decided: Vec<String> =
         rules.iter().chain(of_classes).flat_map(|rule| rule.keys.clone()).collect();
     decided.extend(tuned.iter().flat_map(|tuned| &tuned.keys).map(|(key, _)| key.clone()));
-    rules.extend(variation.rules(base).into_iter().filter(|rule| !decided.contains(&rule.keys[0])));
+    rules
+        .extend(variation.rules(base).into_iter().filter(|rule| !decided.iter().any(|key| rule.varies(key))));
     Ok(rules)
 }
 

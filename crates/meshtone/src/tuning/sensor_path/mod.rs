@@ -455,7 +455,7 @@ struct KeepPowers<'a> {
 }
 
 impl Keep for KeepPowers<'_> {
-    type Recorder = [Vec<f64>; 1];
+    type Recorder = Vec<Vec<f64>>;
     type Kept = Vec<f64>;
 
     fn outputs(&self, scenario: &Scenario) -> Result<Vec<Output>, ScenarioError> {
@@ -470,7 +470,8 @@ impl Keep for KeepPowers<'_> {
         Self::Recorder::default()
     }
 
-    fn keep(&self, index: usize, stages: Stages, [motion]: Self::Recorder) -> Vec<f64> {
+    fn keep(&self, index: usize, stages: Stages, recorded: Self::Recorder) -> Vec<f64> {
+        let motion = recorded.into_iter().next().unwrap_or_default();
         let shown = stages.shown(&Channel::leading(&stages.sensors), motion);
         let piece = index / self.draws;
         let rate_hz = stages.time.sampling_rate_hz;
