@@ -228,7 +228,6 @@ impl Simulate {
         let of_pair = [
             ("--model", self.model.is_some_and(|model| model != Model::Contact)),
             ("--errors-file", self.errors_file.is_some()),
-            ("--tuned", self.tuned.is_some()),
         ];
         let Some((option, _)) = of_pair.iter().find(|(_, given)| *given) else { return Ok(()) };
         let problem =

@@ -536,6 +536,16 @@ fn a_gearbox_is_tuned_over_the_revolutions_of_a_wheel() {
     workplace.succeeds(&enhance);
     let metadata = String::from_utf8_lossy(&workplace.read("enhanced/enhanced.parquet")).into_owned();
     assert!(metadata.contains("over one revolution of z2"));
+    workplace.succeeds(&[
+        "simulate",
+        "broken.toml",
+        "--tuned",
+        "constant/tuned.toml",
+        "--no-panel",
+        "-q",
+        "-o",
+        "tuned",
+    ]);
     workplace.write("pair.toml", format!("model = \"contact\"\n{FAST}"));
     let of_pair = ["enhance", "pair.toml", "--tuned", "constant/tuned.toml", "-o", "enhanced"];
     workplace.fails(2, &of_pair, &["constant/tuned.toml", "no wheel `z2`", "pinion, gear"]);
@@ -559,6 +569,23 @@ fn a_gearbox_is_tuned_over_the_revolutions_of_a_wheel() {
         );
         assert!(warned.contains(&words), "{warned}");
     }
+    let misspelt = experiment("wheel = \"z2\"\n", "").replace("fault.severity", "mesh[z1-z2].damping");
+    refused(&workplace, &misspelt, &["did you mean `mesh[z1-z2].damping_ratio`?"]);
+    workplace.write("tuned.toml", "model = \"contact\"\n[enhancement]\nwidth_ratio = 1.0\nfault_to_harmonics_ratio = 1.0\nnoise_level = 1.0\n[signal]\nsampling_rate_hz = 10e3\n[[key]]\nkey = \"mesh[z1-z2].damping_ratio\"\nvalue = 0.1\n");
+    let other = stderr(&workplace.succeeds(&[
+        "simulate",
+        "pair.toml",
+        "--tuned",
+        "tuned.toml",
+        "--no-panel",
+        "-q",
+        "-o",
+        "pair",
+    ]));
+    assert!(
+        other.contains("is of another machine") && other.contains("mesh[z1-z2].damping_ratio"),
+        "{other}"
+    );
     refused(&workplace, &experiment("", ""), &["signal.wheel", "missing"]);
     refused(&workplace, &experiment("wheel = \"gear\"\n", ""), &["\"z1\", \"z2\""]);
     workplace.write("gearbox.toml", gearbox_template(Some(GearboxRig::PlanetaryLab)));

@@ -2,7 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use meshtone::scenario::{KeyKind, ScenarioNumber, gearbox_sections, sections, split_key};
+use meshtone::scenario::{
+    KeyKind, ScenarioNumber, gearbox_sections, key_of_both_wheels, sections, split_key,
+};
 use meshtone_io::scenario_file::ReadScenarioError;
 use meshtone_toml::{ReadResult, TomlError, nearest_name};
 
@@ -224,6 +226,9 @@ fn unknown(
     let error = refuse_key(placed, key, problem);
     if fault_of_severity(key, faults.len()).is_some() {
         return error.with_help("write the fault with severity = … in place of its sizes");
+    }
+    if let Some(own) = keys(known).find(|own| key_of_both_wheels(own).as_deref() == Some(key)) {
+        return error.with_help(format!("the wheels differ in it: vary `{own}`, or that of the mate"));
     }
     if let Some(default) = computed_default(key, known, content) {
         return error

@@ -156,6 +156,15 @@ fn keys_that_are_none() {
     refused_with("[keep]", teeth, &["is a whole number", "choice or grid"]);
     let backlash = "[[vary]]\nkey = \"gears.backlash_mm\"\nuniform = [0.1, 0.2]\n[keep]";
     refused_with("[keep]", backlash, &["it is left out (default: ⅔", "state it in the scenario"]);
+    let apart = FAST.replace(
+        "points_per_tooth = 1000",
+        "points_per_tooth = 1000\ntip_chamfer_mm = 0.5\ngear_tip_chamfer_mm = 0.3",
+    );
+    let chamfer = "[[vary]]\nkey = \"gears.tip_chamfer_mm\"\nuniform = [0.1, 0.2]\n[keep]";
+    refused(
+        &apart.replace("[keep]", chamfer),
+        &["the wheels differ in it: vary `gears.gear_tip_chamfer_mm`"],
+    );
     // A name is no number that could be stated.
     let hand = "[[vary]]\nkey = \"gears.hand\"\nuniform = [0.1, 0.2]\n[keep]";
     refused_with("[keep]", hand, &["`gears.hand` is no number of the scenario", "did you mean"]);

@@ -10,7 +10,7 @@ use meshtone::tuning::{
     Case, DifferenceChain, EnhancementBounds, Experiment, HybridError, KeyRange, MOST_CANDIDATES, TunedKey,
     TuningIndicator,
 };
-use meshtone_toml::{ReadResult, TomlDocument, TomlError, TomlTable, TomlValue};
+use meshtone_toml::{ReadResult, TomlDocument, TomlError, TomlTable, TomlValue, nearest_name};
 
 use super::measured::{self, CaseFiles, Wanted};
 use super::recordings::RATE_TOLERANCE;
@@ -119,7 +119,7 @@ impl Reading<'_> {
         let measured = root.table_or_empty("measured")?.read(|table| measured::read(table, &wanted, self))?;
         let experiment = Experiment { base, cases, chain, measured, bounds, keys, candidates, seed };
         for number in 0..experiment.keys.len() {
-            experiment.check_key(number).map_err(|error| key_error(number, &error))?;
+            experiment.check_key(number).map_err(|error| key_error(number, &error, &experiment.base))?;
         }
         experiment.check().map_err(|error| TomlError::new("tune", "", error.to_string()))?;
         Ok(experiment)
@@ -149,9 +149,17 @@ impl Reading<'_> {
 }
 
 /// An error about a tuned key, which is reported at its own line.
-fn key_error(number: usize, error: &HybridError) -> TomlError {
+fn key_error(number: usize, error: &HybridError, base: &Scenario) -> TomlError {
     let located = TomlError::new(format!("tune.key[{number}].key"), "", error.to_string());
-    let help = if let HybridError::Simulation(error) = error { error.help() } else { None };
+    let help = match error {
+        HybridError::Simulation(error) => error.help().map(str::to_owned),
+        HybridError::NoSuchKey { key } => {
+            let known = base.settable_numbers();
+            let nearest = nearest_name(key, known.iter().map(|number| number.key.as_str()));
+            nearest.map(|nearest| format!("did you mean `{nearest}`?"))
+        }
+        _ => None,
+    };
     help.into_iter().fold(located, TomlError::with_help)
 }
 

@@ -73,12 +73,19 @@ impl Tuned {
     /// # Arguments
     /// * `scenario` - that they are used for
     pub fn warning_for(&self, scenario: &Scenario) -> Option<String> {
-        (scenario.model != self.model).then(|| {
-            format!(
+        if scenario.model != self.model {
+            return Some(format!(
                 "was tuned with model = \"{}\", but the scenario has \"{}\": the same numbers have another meaning there",
                 self.model.name(),
                 scenario.model.name()
-            )
+            ));
+        }
+        // Those of a fault are of the scenarios that have it.
+        let of_machine: Vec<&str> =
+            self.keys.iter().map(|(key, _)| key.as_str()).filter(|key| !key.starts_with("fault")).collect();
+        let is_other = !of_machine.is_empty() && of_machine.iter().all(|key| scenario.number(key).is_none());
+        is_other.then(|| {
+            format!("is of another machine: the scenario has none of its numbers ({})", of_machine.join(", "))
         })
     }
 

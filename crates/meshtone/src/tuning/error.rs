@@ -113,7 +113,9 @@ pub enum HybridError {
         label: String,
     },
     /// A tuned key is not in any scenario.
-    #[error("no case has a number at the key {key}; the keys are those of the scenario file, dotted")]
+    #[error(
+        "no case has a number at the key {key}; one that is left out of the scenario must be stated there"
+    )]
     NoSuchKey {
         /// The key.
         key: String,
