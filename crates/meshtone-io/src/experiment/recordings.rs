@@ -208,10 +208,9 @@ fn other_speed(wanted: &Wanted, shaft: usize, ratio: f64) -> String {
 /// As simulated signals are processed: so many points a revolution, read in the same way.
 fn settings(wanted: &Wanted) -> ReadResult<ChainSettings> {
     let shaft_hz = nominal_speed_hz(wanted, wanted.train.wheels[wanted.wheel].shaft);
-    let points = wanted.chain.points_per_revolution(shaft_hz);
-    let points = points.map_err(|error| {
-        TomlError::new("signal.sampling_rate_hz", wanted.chain.sampling_rate_hz, error.to_string())
-    })?;
+    let rate_hz = wanted.chain.sampling_rate_hz;
+    let refuse = |error: SignalError| TomlError::new("signal.sampling_rate_hz", rate_hz, error.to_string());
+    let points = wanted.chain.points_per_revolution(shaft_hz).map_err(refuse)?;
     let angular = AngularSettings {
         points_per_revolution: Some(points),
         ..DifferenceChain::angular_settings(wanted.base.model)
@@ -266,10 +265,9 @@ impl Phase<'_> {
     fn stated(&self, shaft: usize, turned_hz: f64) -> StatedTurning {
         let is_known = self.shaft == shaft;
         match self.source {
-            PhaseSource::Constant { shaft_hz } if is_known => {
-                StatedTurning::ConstantSpeed { speed_hz: shaft_hz }
+            PhaseSource::Constant { shaft_hz } => {
+                StatedTurning::ConstantSpeed { speed_hz: if is_known { shaft_hz } else { turned_hz } }
             }
-            PhaseSource::Constant { .. } => StatedTurning::ConstantSpeed { speed_hz: turned_hz },
             PhaseSource::Tachometer { pulses_per_revolution, .. } if is_known => {
                 StatedTurning::Pulses { per_revolution: pulses_per_revolution }
             }

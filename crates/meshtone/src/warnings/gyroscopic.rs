@@ -37,11 +37,6 @@ impl Stages {
             .collect()
     }
 
-    /// Whether the steps have gyroscopic moments.
-    pub fn has_gyroscopic_steps(&self) -> bool {
-        self.machine().is_some_and(|(assembled, _)| !assembled.machine.spinning.is_empty())
-    }
-
     /// The mode that what is left out shifts the most, where that is much.
     pub(super) fn gyroscopic(&self) -> Option<ScenarioWarning> {
         let (assembled, _) = self.machine()?;
