@@ -283,9 +283,6 @@ fn what_knows_one_pair_says_so() {
     let experiment = stdout(&workplace.succeeds(&["init", "experiment"]));
     let line = experiment.lines().find(|line| line.starts_with("scenario = ")).unwrap();
     workplace.write("experiment.toml", experiment.replace(line, "scenario = \"gearbox.toml\""));
-    workplace.fails(
-        2,
-        &["tune", "experiment.toml", "-o", "tuned"],
-        &["of a gearbox", "tuning", "accept one pair only"],
-    );
+    // Tuning asks for the wheel.
+    workplace.fails(2, &["tune", "experiment.toml", "-o", "tuned"], &["signal.wheel", "missing"]);
 }
