@@ -139,10 +139,9 @@ impl Diagnose {
         let mut scenario = file.scenario.clone().with_faults(Vec::new());
         if let Some(path) = &self.tuned {
             let refuse = |problem: String| Failure::bad_input(format!("{}: {problem}", path.display()));
-
             let tuned = read_tuned(path).map_err(|error| Failure::of_file(FileKind::Tuned, error))?;
             if let Some(problem) = tuned.warning_for(&scenario) {
-                return Err(refuse(problem).with_help("tune again with the scenario's model"));
+                return Err(refuse(problem).with_help("tune again with this scenario"));
             }
             scenario = tuned.apply(&scenario).map_err(|error| refuse(error.to_string()))?;
         }

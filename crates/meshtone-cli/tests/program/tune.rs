@@ -473,7 +473,7 @@ fn recordings_are_as_simulated(wheel: WheelName) {
     assert!(metadata.contains(&format!("over one revolution of the {}", wheel.name())));
 }
 
-/// Of a gearbox the wheel is named, and a hidden severity of its damage is found again in recordings with other random forces.
+/// The experiment names the wheel of a gearbox, and tuning finds a hidden severity of its damage in recordings with other random forces.
 #[test]
 fn a_gearbox_is_tuned_over_the_revolutions_of_a_wheel() {
     let workplace = workplace();

@@ -244,7 +244,7 @@ fn unknown(
     })
 }
 
-/// What is taken in place of a number that is left out of a section that is there, in words.
+/// The default, in words, of a number that the scenario leaves out of one of its sections; none where the key is no such number.
 fn computed_default(key: &str, known: &[ScenarioNumber], content: &Content) -> Option<String> {
     let (section, key) = split_key(key);
     if section == "fault" || !keys(known).any(|known| split_key(known).0 == section) {

@@ -33,7 +33,7 @@ pub struct Rule {
     pub plus: Option<Expression>,
 }
 
-/// Whether one key is the other, or has a part of its number: that of one wheel of a pair, of the key of both.
+/// Returns whether two keys set the same number, or one of them sets it for one wheel of a pair and the other for both wheels.
 pub(crate) fn overlap(key: &str, other: &str) -> bool {
     let is_part = |key: &str, of: &str| key_of_both_wheels(key).as_deref() == Some(of);
     key == other || is_part(key, other) || is_part(other, key)

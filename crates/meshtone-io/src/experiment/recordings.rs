@@ -26,7 +26,7 @@ struct Phase<'a> {
     source: PhaseSource<'a>,
 }
 
-/// Where the phase comes from.
+/// The source of the phase.
 enum PhaseSource<'a> {
     /// The shaft turns at a constant speed.
     Constant { shaft_hz: f64 },
@@ -107,7 +107,7 @@ struct Warnings {
     first_of_kind: Vec<(WarningKind, String, usize)>,
 }
 
-/// What is looked at of a recording.
+/// The parts of a recording that are checked.
 struct Heard<'a> {
     /// Its name.
     file: &'a str,
@@ -257,7 +257,7 @@ fn phase<'a>(table: &TomlTable<'a>, wanted: &Wanted) -> ReadResult<Phase<'a>> {
 }
 
 impl Phase<'_> {
-    /// What is stated of a shaft: only that can be reported as mistaken.
+    /// The statement about a shaft that can be reported as mistaken.
     ///
     /// # Arguments
     /// * `shaft` - its number
