@@ -1,9 +1,9 @@
 """Published data sets: the SHA-256 of each one's ``manifest.json``, which has that of every file."""
 
 PUBLISHED = {
-    "gearbox-1": "2583c11af68a90030ef2670ac8da5b34c6f64d2d1601ca1baf43ef9b994566de",
-    "laws-1": "e754ce64867f3fb0c98a29e993ab22a1dfeffe3a083e64c6a05d584bfdd1efd2",
-    "lives-1": "ad333a6069f58f6ad2d4892ed4d16bde9c0d274f829dfaeccaeee4ed6b221cda",
-    "pairs-1": "5eef6bd2735a7df5ee092e1c60f91ff57c91b8a40cea42f98dcb364a554f2248",
-    "rigs-1": "9ae2a454a100952de9790c5a04df15e7c91148544167e9ce55d77f85066490f7",
+    "gearbox-1": "b93d316dafba2cac5ce8fbb6ae57bafd542f303f9ecd0c9eecce2e1b5f1101f5",
+    "laws-1": "27f05a64a5825777083d6a31346319cb6343ff06c33219d132244ca4262cc96e",
+    "lives-1": "0df67bfe9f0df1db695e65154fc22a5ef7992ee63768db73c27e3a55c4b9a44b",
+    "pairs-1": "df14922c92fbf16349c6cdf82a762c73d3d8f2c2ebbe45561bae203ac9eb1ed9",
+    "rigs-1": "5460c9c2e7658bb50ba69e5a0de1e26ea56aae7752a344be29426812233499b9",
 }

@@ -13,7 +13,7 @@ use crate::failure::Failure;
 /// The scenario that the experiment names.
 const SCENARIO: &str = "rig.toml";
 /// The torque of the template, and one under which teeth do not part, so that small changes of the rig change little.
-const TORQUES: [&str; 2] = ["brake_torque_nm = 10.0 ", "brake_torque_nm = 150.0"];
+const TORQUES: [&str; 2] = ["brake_torque_nm = 10.0 ", "brake_torque_nm = 250.0"];
 /// The difference between the rig and the scenario, which has other supports and no sensor with noise; and the length of the recordings.
 const RIG: &str = "
 [rig]

@@ -73,7 +73,7 @@ mod stiffness;
 
 /// Version of the numbers that a scenario gives. It grows with every change of the simulation that changes them, whatever the version of
 /// the program: what is kept of an older one, as a data set that is continued or a set of reference simulations, is made anew.
-pub const PHYSICS_VERSION: u32 = 10;
+pub const PHYSICS_VERSION: u32 = 11;
 
 /// The program and the numbers by which a file was made, as a data card states them.
 ///

@@ -259,7 +259,7 @@ fn more_than_is_simulated() {
     refused_with("[keep]", &keep(0.05), &words);
     // The key that says how much is simulated, where that says too little, and its line.
     for (key, value) in [("pinion_revolutions", "3.0"), ("duration_s", "0.05")] {
-        let line = format!("line 19: scenario.solver.{key} = {value}");
+        let line = format!("line 20: scenario.solver.{key} = {value}");
         let words = [&line, "no record of the class \"healthy\"", "needs at least 2", "raise it"];
         refused_with("sampling_rate_hz = 1e4", &format!("sampling_rate_hz = 1e4\n{key} = {value}"), &words);
     }
@@ -319,7 +319,7 @@ fn choices_that_are_impossible() {
     let missing = "fault = { kind = \"missing-tooth\" }\nseverity = 4";
     let tooth = |choice: &str| format!("{missing}\n[[class.vary]]\nkey = \"fault.tooth\"\n{choice}");
     let words = [
-        "line 37",
+        "line 38",
         "class[2].vary[0].choice[1] = 41",
         "class \"missing\"",
         "must be at most 40, the gear's teeth",

@@ -24,6 +24,7 @@ pinion_teeth = 20
 gear_teeth = 40
 face_width_mm = 15.0
 points_per_tooth = 1000
+foundation = { rotation = "tooth" } # so soft that the long steps suffice
 [scenario.operation]
 pinion_speed_hz = 40.0
 brake_torque_nm = 200.0

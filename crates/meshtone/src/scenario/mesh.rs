@@ -3,7 +3,7 @@
 use super::ScenarioWheel;
 use crate::keys::{KeyRow, Keys, field, rows};
 use crate::wheel::rows::*;
-use crate::wheel::{BodyRotation, EndRelief, FoundationCoefficients, Gears, Hand, Material, WheelName};
+use crate::wheel::{EndRelief, FoundationCoefficients, Gears, Hand, Material, WheelName};
 
 /// Two wheels in mesh.
 #[derive(Debug, Clone, PartialEq)]
@@ -34,8 +34,7 @@ pub struct ScenarioMesh {
     pub misalignment_um: f64,
     /// Number of points along a tooth's profile. Default 10 000.
     pub points_per_tooth: usize,
-    /// Coefficients of the fillet foundation's compliance. Default: Sainsot et al. 2004, with the rotation of the wheels' bodies in the machine, in a
-    /// rig in the teeth.
+    /// Coefficients of the fillet foundation's compliance. Default: Sainsot et al. 2004, with the rotation of the wheels' bodies in the machine.
     pub foundation: FoundationCoefficients,
     /// (base pitches) Position of the first pair at the start; none for 0, and for what the teeth of an idler make it.
     pub phase: Option<f64>,
@@ -139,10 +138,7 @@ impl Keys for ScenarioMesh {
             backlash_mm: None,
             misalignment_um: 0.0,
             points_per_tooth: 10_000,
-            foundation: FoundationCoefficients {
-                rotation: BodyRotation::Machine,
-                ..FoundationCoefficients::default()
-            },
+            foundation: FoundationCoefficients::default(),
             phase: None,
             damping_ratio: 0.08,
             friction: 0.05,

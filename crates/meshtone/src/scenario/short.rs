@@ -15,7 +15,7 @@ use crate::keys::{
 };
 use crate::wheel::quality::{DEVIATION_KEYS, file_deviations};
 use crate::wheel::rows::*;
-use crate::wheel::{FoundationCoefficients, Material, WheelName};
+use crate::wheel::{Material, WheelName};
 
 /// The inertia of the brake of a rig.
 const BRAKE_INERTIA_KGM2: f64 = 4.5e-3;
@@ -143,7 +143,6 @@ impl Scenario {
             wheels: names.map(wheel).to_vec(),
             meshes: vec![ScenarioMesh {
                 damping_ratio: MESH_DAMPING_RATIO,
-                foundation: FoundationCoefficients::default(),
                 friction: 0.0,
                 random_force: 0.0,
                 ..ScenarioMesh::new(names, f64::NAN)

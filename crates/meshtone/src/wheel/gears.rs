@@ -221,8 +221,7 @@ pub struct FoundationCoefficients {
     pub p: [f64; 6],
     /// (-) `A…F` of `Q`, the factor of `tan²α`.
     pub q: [f64; 6],
-    /// Where the rotation of the wheel's whole body is, which `P` has too. Default: in the teeth, of wheels on shafts of beams in the
-    /// machine.
+    /// Where the rotation of the wheel's whole body is, which `P` has too. Default: in the machine. `published` leaves it in the teeth.
     pub rotation: BodyRotation,
 }
 
@@ -244,7 +243,7 @@ impl Default for FoundationCoefficients {
             m: [60.111e-5, 28.100e-3, -83.431e-4, -9.9256e-3, 0.1624, 0.9086],
             p: [-50.952e-5, 185.50e-3, 0.0538e-4, 53.300e-3, 0.2895, 0.9236],
             q: [-6.2042e-5, 9.0889e-3, -4.0964e-4, 7.8297e-3, -0.1472, 0.6904],
-            rotation: BodyRotation::Tooth,
+            rotation: BodyRotation::Machine,
         }
     }
 }

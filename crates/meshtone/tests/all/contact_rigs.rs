@@ -127,9 +127,9 @@ fn gaps_deeper_than_the_fall_are_alike() {
     };
     let [deep, deeper, deepest] = falls("destruction", &[4, 5, 6], 200.0)[..] else { panic!() };
     assert_eq!((deep, deeper), (deeper, deepest));
-    assert!((deep[0] - 135.6).abs() < 0.5);
+    assert!((deep[0] - 132.0).abs() < 0.5);
     let [pit, missing] = [falls("pitting", &[4], 200.0)[0], falls("breakage", &[6], 200.0)[0]];
-    assert!((missing[0] - 116.5).abs() < 0.5 && (pit[1] / missing[1] - 1.0).abs() < 2e-3);
+    assert!((missing[0] - 127.4).abs() < 0.5 && (pit[1] / missing[1] - 1.0).abs() < 2e-3);
     let soft = falls("destruction", &[4, 5, 6], 4000.0);
-    assert!(soft.windows(2).all(|pair| pair[1][0] > 1.03 * pair[0][0] && pair[1][1] > 1.01 * pair[0][1]));
+    assert!(soft.windows(2).all(|pair| pair[1][0] > 1.03 * pair[0][0] && pair[1][1] > 1.001 * pair[0][1]));
 }

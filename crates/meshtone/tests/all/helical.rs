@@ -4,12 +4,13 @@
 use std::f64::consts::{PI, TAU};
 use std::num::NonZeroUsize;
 
+use crate::physics::with_rotation_in_teeth;
 use meshtone::mesh::Mesh;
 use meshtone::scenario::*;
 use meshtone::wheel::{Root, Wheel, tooth_profile};
 use meshtone::{Stages, simulate, stages, stages_and_warnings};
 
-/// A pair of solid steel wheels without chamfers, whose bores are as large a part of the root circle as asked.
+/// A pair of steel wheels without chamfers on bores of 1/1.4 of the root circle, whose bodies turn with each pair of teeth, as in the independent program.
 fn pair(teeth: [u32; 2], module_mm: f64, face_width_mm: f64, helix_angle_deg: f64) -> Scenario {
     let mut scenario = Scenario::new(GearPair {
         module_mm,
@@ -23,6 +24,7 @@ fn pair(teeth: [u32; 2], module_mm: f64, face_width_mm: f64, helix_angle_deg: f6
     gears.helix_angle_deg = helix_angle_deg;
     gears.tip_chamfer_mm = [Some(0.0); 2];
     gears.active_profile_shortening = [0.0; 2];
+    gears.foundation = with_rotation_in_teeth();
     gears.material = Material::Given(MaterialConstants {
         youngs_modulus_gpa: 206.0,
         poisson_ratio: 0.3,

@@ -3,7 +3,7 @@
 
 use std::sync::atomic::AtomicBool;
 
-use meshtone::scenario::{Fault, GearPair, MissingTooth, Model, Profile, Scenario};
+use meshtone::scenario::{Fault, GearPair, Model, Profile, Scenario, ToothBreakage};
 use meshtone::signal::{kurtosis, resampling_ratio, rms, skewness};
 use meshtone::simulate;
 use meshtone::tuning::*;
@@ -210,7 +210,8 @@ fn difference_signals_of_any_speed_and_rate() {
         [(24.600_3, false), (24.583_1, false), (29.170_7, false), (31.415_926_535, true)]
     {
         let gears = GearPair { pinion_speed_hz: speed_hz, ..GearPair::example() };
-        let mut scenario = Scenario::new(gears).with_faults(vec![Fault::on_first_gear_tooth(MissingTooth)]);
+        let chip = ToothBreakage { chip_height_mm: 5.0, chip_width_mm: 12.0, tip_loss_mm: 2.0 };
+        let mut scenario = Scenario::new(gears).with_faults(vec![Fault::on_first_gear_tooth(chip)]);
         scenario.model = Model::Linear;
         if has_profile {
             // Not periodic: what is kept is read at its own angles.

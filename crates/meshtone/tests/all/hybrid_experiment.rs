@@ -187,10 +187,10 @@ fn a_case_that_is_left_out_has_not_been_seen() {
         let scale = (records.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / 2.0).sqrt();
         result.with_keys.unwrap().tuning.left_out[2].error * scale
     };
-    // The predictions lie below both, at about 2.7. Where the refinements end depends on the scale of the errors, so not to the last bit; a
+    // The predictions lie below both, at about 2.8. Where the refinements end depends on the scale of the errors, so only to some thousandths; a
     // search that had seen the case would follow it by more than a tenth.
     let (near, far) = (distance(4.0), distance(5.0));
-    assert!((far - near - 1.0).abs() < 1e-3, "{near} {far}");
+    assert!((far - near - 1.0).abs() < 5e-3, "{near} {far}");
 }
 
 #[test]

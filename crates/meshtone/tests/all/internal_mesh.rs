@@ -8,7 +8,9 @@ use std::path::PathBuf;
 
 use crate::physics::*;
 use meshtone::damage::{Fault, FaultFlank, MissingTooth};
-use meshtone::scenario::{FoundationCoefficients, Gears, Material, MaterialConstants, WheelName};
+use meshtone::scenario::{
+    BodyRotation, FoundationCoefficients, Gears, Material, MaterialConstants, WheelName,
+};
 use meshtone::stiffness::{FlankLoad, LoadedFlank};
 use meshtone::wheel::{Mounting, Teeth, Wheel, teeth};
 use ndarray::{Array1, OwnedRepr};
@@ -22,6 +24,7 @@ fn meshes(module_mm: f64, [sun, planet, ring]: [u32; 3], face_width_mm: f64) -> 
     [(sun, planet, false), (planet, ring, true)].map(|(pinion, gear, internal)| {
         let mut gears = Gears::new(module_mm, pinion, gear, face_width_mm);
         gears.internal = internal;
+        gears.foundation = with_rotation_in_teeth();
         gears.material = Material::Given(MaterialConstants {
             youngs_modulus_gpa: E_MPA * 1e-3,
             poisson_ratio: POISSON,
@@ -111,7 +114,7 @@ fn half_plane_mm_per_n(teeth: &Teeth, wheel: WheelName, load: &FlankLoad) -> f64
 }
 
 // Of many teeth a wheel and a ring are the same rack, whose tooth bends alike. What is below the tooth is another model's, the half plane's or
-// Sainsot's, which is stated for up to some 300 teeth: at 200 they make pairs alike within 15 %.
+// Sainsot's, which is stated for up to some 300 teeth: at 200 they make pairs alike within 16 %.
 #[test]
 fn a_ring_of_many_teeth_is_a_rack() {
     let of_teeth = |many: u32, internal: bool| {
@@ -131,6 +134,7 @@ fn a_ring_of_many_teeth_is_a_rack() {
             let foundation = &mut gears.foundation;
             (foundation.l, foundation.m) = (constant(5.306 * plane), constant(2.0 * (1.0 - POISSON)));
             (foundation.p, foundation.q) = (constant(1.534 * plane), constant(0.4167 / (1.0 + POISSON)));
+            foundation.rotation = BodyRotation::Tooth;
         }
         let tooth = LoadedFlank::new(flank, None, gears.material, &gears.foundation);
         let bends = tooth.compliance_mm_per_n(&load) - half_plane_mm_per_n(&teeth, WheelName::Gear, &load);
@@ -146,7 +150,7 @@ fn a_ring_of_many_teeth_is_a_rack() {
         assert_close("path", tolerance, [(ring[2], wheel[2]), (ring[3], wheel[3])]);
     }
     let [wheel, ring] = [false, true].map(|internal| of_teeth(200, internal));
-    assert_close("pair", 0.15, [(ring[1], wheel[1])]);
+    assert_close("pair", 0.16, [(ring[1], wheel[1])]);
 }
 
 // The spaces of a ring are the teeth of a wheel: its own teeth fill what these leave, at any radius, and planet and ring fill the pitch

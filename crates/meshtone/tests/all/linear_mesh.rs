@@ -7,10 +7,11 @@ use crate::physics::*;
 use meshtone::scenario::{GearPair, Model, Scenario};
 use meshtone::{simulate, stages};
 
-/// The example's pair on thin shafts.
+/// The example's pair on thin shafts, with bodies that turn with each pair of teeth, as in the other implementation.
 fn pair() -> Scenario {
     let mut scenario = Scenario::new(GearPair::example());
     scenario.model = Model::Linear;
+    scenario.meshes[0].foundation = with_rotation_in_teeth();
     scenario.wheels.iter_mut().for_each(|wheel| wheel.tip_chamfer_mm = Some(0.0));
     scenario.rig_mut().unwrap().pinion_shaft.radius_mm = 10.0;
     scenario.rig_mut().unwrap().gear_shaft.radius_mm = 10.0;

@@ -41,7 +41,8 @@ pub fn mean(values: &[f64]) -> f64 {
 }
 
 /// Gives a scenario supports, tips and deviations of its own, for tests whose numbers or tolerances were measured with them: supports
-/// with modes at 1.6 and 4.3 kHz, a path as long as chamfers of 0.2 modules leave it, and wheels whose teeth are more alike.
+/// with modes at 1.6 and 4.3 kHz, a path as long as chamfers of 0.2 modules leave it, and wheels whose teeth are more alike and whose bodies
+/// turn with each pair of teeth.
 pub fn with_own_structure(scenario: &mut Scenario) {
     scenario.rig_mut().unwrap().support = Support {
         mass_kg: 1.6,
@@ -53,6 +54,7 @@ pub fn with_own_structure(scenario: &mut Scenario) {
         .iter_mut()
         .for_each(|wheel| wheel.tip_chamfer_mm = Some(0.2 * scenario.meshes[0].module_mm));
     scenario.wheels.iter_mut().for_each(|wheel| wheel.active_profile_shortening = 0.0);
+    scenario.meshes[0].foundation = with_rotation_in_teeth();
     for wheel in &mut scenario.wheels {
         (wheel.tooth_share, wheel.pitch_share) = (0.4, 0.15);
     }
@@ -113,6 +115,11 @@ pub fn sound_and_damaged(mesh: &Mesh) -> [&PairTable; 2] {
 /// (N/m) Stiffness of a class of pairs, point by point.
 pub fn stiffness_n_per_m(pairs: &PairTable) -> Vec<f64> {
     pairs.states.iter().map(|state| state.stiffness_n_per_m).collect()
+}
+
+/// A wheel's body that turns with each pair of teeth, as it does in programs and tables that the library is compared with.
+pub fn with_rotation_in_teeth() -> FoundationCoefficients {
+    FoundationCoefficients { rotation: BodyRotation::Tooth, ..Default::default() }
 }
 
 /// A wheel's body that does not give way.
