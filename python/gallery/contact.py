@@ -16,7 +16,7 @@ from meshtone.plotting import BLUE, GREY, ORANGE
 
 LIGHT_BLUE = "#56b4e9"
 
-RELIEF = {"shape": "linear", "length_mm": 2.0, "amount_um": 30.0}
+RELIEF = {"shape": "linear", "length_mm": 2.0, "amount_um": 21.0}
 torques_nm = np.linspace(10, 400, 40)
 healthy = mt.examples.healthy().copy(model="contact", brake_torque_nm=200, tip_chamfer_mm=0.3)
 broken = healthy.copy(fault=mt.ToothBreakage(chip_height_mm=5, chip_width_mm=12, tip_loss_mm=3))

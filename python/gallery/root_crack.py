@@ -18,7 +18,7 @@ OTHER_PROGRAM = np.array(
     [[0.5, 1.69, 0.86, 0.61, 0.23], [1, 4.32, 2.04, 1.49, 0.47], [2, 12.33, 5.56, 3.87, 1.01], [3, 24.51, 10.79, 7.32, 1.77]]
 )
 
-healthy = mt.examples.healthy().copy(din_grade=0)
+healthy = mt.examples.healthy().copy(din_grade=0, foundation={"rotation": "tooth"})
 depths_mm = np.linspace(0, 4.25, 18)
 whole_face_mm = healthy.face_width_mm
 

@@ -20,8 +20,8 @@ use super::{Record, RecordFault, RecordSpall, RecordWheel, TurningWheel, noise, 
 use crate::draw::DrawnRecord;
 use crate::plan::{Content, FaultPlace, FaultyBase, Keep};
 
-/// Growth is judged by the first and the last part of a record, one of so many.
-const END: usize = 10;
+/// Growth is judged by the first, the middle and the last part of a record, one of so many.
+const PART: usize = 10;
 /// Growth from the first to the last part above which a motion is not steady.
 const MOST_GROWTH: f64 = 10.0;
 
@@ -31,22 +31,29 @@ const MOST_GROWTH: f64 = 10.0;
 /// * `channels`, `samples` - what was simulated
 /// * `damping_key` - key of the scenario by which the damping is raised
 fn refuse_growth(channels: &[Channel], samples: &[Vec<f32>], damping_key: &str) -> Result<(), String> {
-    let square = |part: &[f32]| part.iter().map(|&x| f64::from(x) * f64::from(x)).sum::<f64>();
-    let (mut first, mut last) = (0.0, 0.0);
-    for (_, samples) in channels.iter().zip(samples).filter(|(channel, _)| channel.is_acceleration()) {
-        let part = samples.len() / END;
-        first += square(&samples[..part]);
-        last += square(&samples[samples.len() - part..]);
-    }
-    if last > MOST_GROWTH * MOST_GROWTH * first {
-        let growth = (last / first).sqrt();
-        return Err(format!(
+    let accelerations = channels.iter().zip(samples).filter(|(channel, _)| channel.is_acceleration());
+    growth(accelerations.map(|(_, samples)| &samples[..])).map_or(Ok(()), |growth| {
+        Err(format!(
             "the motion grows from the record's start to its end, by a factor of {growth:.0}: damping does \
              not remove the energy that the varying mesh stiffness adds to a mode; raise {damping_key} or \
              use other teeth or another speed"
-        ));
+        ))
+    })
+}
+
+/// (-) By what factor signals grow from the record's start to its end; none where they do not, or not throughout.
+fn growth<'a>(signals: impl Iterator<Item = &'a [f32]>) -> Option<f64> {
+    let square = |part: &[f32]| part.iter().map(|&x| f64::from(x) * f64::from(x)).sum::<f64>();
+    let [mut first, mut middle, mut last] = [0.0; 3];
+    for samples in signals {
+        let part = samples.len() / PART;
+        first += square(&samples[..part]);
+        middle += square(&samples[samples.len() / 2..][..part]);
+        last += square(&samples[samples.len() - part..]);
     }
-    Ok(())
+    // What grows throughout has grown by the root of it halfway; a damaged tooth that meets in the last part alone has not.
+    let grows = last > MOST_GROWTH * MOST_GROWTH * first && middle > MOST_GROWTH * first;
+    grows.then(|| (last / first).sqrt())
 }
 
 /// A simulation that is read like a recording: from the mark on, at the sampling rate of the data set.
@@ -358,5 +365,22 @@ impl<'a> View<'a> {
         let angular = DifferenceChain::angular_settings(self.simulated.scenario.model);
         let (_, record) = self.chain()?.analyse(signal, 0, angular, MeanPart::Removed)?;
         Ok(record.parts.difference)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::growth;
+
+    #[test]
+    fn only_what_grows_throughout_is_refused() {
+        let signal = |of: &dyn Fn(f32) -> f32| -> Vec<f32> {
+            (0..1000).map(|n| of(n as f32 / 1000.0) * (n as f32).sin()).collect()
+        };
+        let growing = signal(&|part| (3.0 * part).exp());
+        assert!(growth([&growing[..]].into_iter()).is_some_and(|factor| (14.0..16.0).contains(&factor)));
+        let impact = signal(&|part| if part > 0.95 { 30.0 } else { 1.0 });
+        assert_eq!(growth([&impact[..]].into_iter()), None);
+        assert_eq!(growth(std::iter::empty()), None);
     }
 }

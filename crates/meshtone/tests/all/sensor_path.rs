@@ -157,16 +157,15 @@ fn a_hidden_path_is_found_again() {
     }
 }
 
-/// Prints the first two rows of the book's table. The largest error is at most 3 dB from a run-up but for one machine whose wheels are louder
-/// as a whole, 6 dB from one speed. The intervals of 90 % hold the path.
+/// Prints the first two rows of the book's table. The largest error is at most 3 dB from a run-up and 6 dB from one speed, but for one machine
+/// each, whose wheels are louder as a whole. The intervals of 90 % hold the path.
 #[test]
 #[ignore = "a measurement: cargo xtask measure"]
 fn hidden_paths_of_several_machines() {
-    for (speeds_hz, length_s, most_db, outside) in [([20.0, 60.0], 10.0, 3.0, 1), ([40.0, 40.0], 5.0, 6.0, 0)]
-    {
+    for (speeds_hz, length_s, most_db) in [([20.0, 60.0], 10.0, 3.0), ([40.0, 40.0], 5.0, 6.0)] {
         let (largest, part) = largest_errors_db(500..512, speeds_hz, length_s, draws_of_users());
         let beyond = largest.iter().filter(|most| **most > most_db).count();
-        assert!(beyond <= outside && largest.iter().all(|most| *most < most_db + 1.0), "{largest:?}");
+        assert!(beyond <= 1 && largest.iter().all(|most| *most < most_db + 1.0), "{largest:?}");
         // The points of one machine are off together, and these are twelve.
         assert!(part > 0.75, "{part}");
     }
