@@ -30,6 +30,10 @@ def rig_with(rig: str, fault: Any, changes: dict[str, Any] | None = None) -> mt.
     def inline(value: Any) -> str:
         if isinstance(value, dict):
             return "{ " + ", ".join(f"{key} = {inline(inner)}" for key, inner in value.items()) + " }"
+        if isinstance(value, list):
+            return "[" + ", ".join(map(inline, value)) + "]"
+        if isinstance(value, bool):
+            return str(value).lower()
         return f'"{value}"' if isinstance(value, str) else repr(value)
 
     table = tomllib.loads(rig)
