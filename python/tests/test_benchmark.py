@@ -62,7 +62,7 @@ def bounds_broken(name: str, scores: dict[str, benchmark.Scores]) -> list[str]:
             if is_law and name != "laws":
                 continue
             classes = 2 if is_law else 5 if of_set in ("rigs-1", "laws-1") else 6
-            # From five records of a class little is learnt.
+            # From five records of a class little is learnt; two classes are easier to tell than five.
             above_chance = 0.05 if name == "few-5" else 0.1
             least, most = {"auc": (0.6, 0.95), "recall": (1 / classes + above_chance, 0.98 if is_law else 0.95), "of_constant": (0.05, 0.7)}[measure]
             if not least <= measures[measure][0] <= most:
@@ -106,8 +106,11 @@ def test_half_of_the_other_law_regains_half_of_the_loss() -> None:
     for law in ("pits/drawn", "wear/uneven", "root-crack/worn"):
         behind = law.partition("/")[2]
         none, half, known = (recall(task, law) for task in ("laws", f"laws-half-{behind}", f"laws-known-{behind}"))
-        loss = known - none
-        assert loss > -0.05 and (loss < 0.05 or half - none >= loss / 2), law
+        if law == "pits/drawn":
+            # To know how they are drawn gains nothing.
+            assert abs(known - none) < 0.05
+        else:
+            assert half - none >= (known - none) / 2 > 0, law
 
 
 def test_what_is_answered_is_scored(sets: Path, tmp_path: Path) -> None:

@@ -219,8 +219,8 @@ mod tests {
         let begins = |mesh: &Mesh| carried(mesh).iter().position(|force| *force > 1.0).unwrap();
         let ends = |mesh: &Mesh| carried(mesh).iter().rposition(|force| *force > 1.0).unwrap();
         println!("{:?}", [&neither, &driving, &driven, &both].map(|mesh| [begins(mesh), ends(mesh)]));
-        assert!(begins(&driven) > begins(&neither) + 5 && begins(&driven) == begins(&both));
-        assert!(ends(&driving) + 5 < ends(&neither) && ends(&driving) == ends(&both));
+        assert!(begins(&driven) > begins(&neither) + 5 && begins(&driven).abs_diff(begins(&both)) <= 1);
+        assert!(ends(&driving) + 5 < ends(&neither) && ends(&driving).abs_diff(ends(&both)) <= 1);
         assert!(begins(&driving) == begins(&neither) && ends(&driven) == ends(&neither));
     }
 

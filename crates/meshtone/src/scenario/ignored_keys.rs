@@ -27,7 +27,7 @@ impl Scenario {
     pub fn ignored_by_model(&self) -> Vec<ScenarioWarning> {
         let warning = |key: String| {
             let message = format!(
-                "is ignored: the {} model does not use it and simulates its default; remove it, or set another model",
+                "is ignored: the {} model does not use it; remove it, or set another model",
                 self.model.name()
             );
             ScenarioWarning::new(WarningKind::IgnoredKey, key, message)

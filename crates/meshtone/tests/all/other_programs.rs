@@ -369,7 +369,7 @@ fn iso_single_stiffness() {
                 100.0 * deviation(single, practical),
                 100.0 * deviation(cycle, gamma)
             );
-            assert!(single < 1.04 * iso, "no stiffer than the theoretical stiffness");
+            assert!(single < 1.04 * iso, "at most 4 % stiffer than the theoretical stiffness");
             let found = [deviation(single, practical), deviation(cycle, gamma)];
             let differs = found.iter().zip(above).any(|(found, above)| (found - above).abs() > 2e-3);
             assert!(!differs, "{z1}/{z2}: {found:?} instead of {above:?}");
@@ -469,7 +469,7 @@ fn shifted_pairs_of_two_gearbox_reports() {
 }
 
 // The root circle crosses the base circle between 41 and 42 teeth. Neither the profile nor the body knows of it: the stiffness goes on
-// with nearly the same change from tooth to tooth as before and behind.
+// within 0.13 % from tooth to tooth.
 #[test]
 fn stiffness_is_continuous_in_the_tooth_count() {
     let stiffness = |z: u32| {
@@ -483,7 +483,7 @@ fn stiffness_is_continuous_in_the_tooth_count() {
     let values: Vec<f64> = (38..=46).map(stiffness).collect();
     let steps: Vec<f64> = values.windows(2).map(|pair| pair[1] / pair[0] - 1.0).collect();
     println!("{steps:?}");
-    assert!(steps.windows(2).all(|pair| (pair[1] - pair[0]).abs() < 1.4e-3), "{steps:?}");
+    assert!(steps.iter().all(|step| step.abs() < 1.3e-3), "{steps:?}");
 }
 
 // ---------------------------------------------------------------------------------------------------------------
@@ -533,14 +533,12 @@ fn natural_frequencies_of_a_pair_with_8_coordinates() {
     }
 }
 
-// Without the mesh every wheel stands alone on its bearings and its shaft; only the gear shares its shaft with the brake. The wheels
+// Without the mesh every wheel stands alone on its bearings and its shaft, which yields with its body; only the gear shares its shaft with the brake. The wheels
 // are midway between their bearings, which do not give way.
 #[test]
 fn natural_frequencies_without_the_mesh() {
     let scenario = Scenario::new(GearPair::example());
-    let gears = &mut scenario.gears();
-    gears.foundation = with_rotation_in_teeth();
-    let rig = scenario.rig().unwrap();
+    let (gears, rig) = (&scenario.gears(), scenario.rig().unwrap());
     let (inertia, unbalance) = Default::default();
     let parts = RigParts {
         gears,
@@ -573,7 +571,12 @@ fn natural_frequencies_without_the_mesh() {
     assert!(modes.angular_frequencies[0].powi(2) < 1e-9 * squares[0], "gear and brake turn freely");
     let exact = squares.iter().map(|square| square.sqrt());
     assert_close("uncoupled frequencies", 1e-13, modes.angular_frequencies[1..].iter().copied().zip(exact));
-    // G = E/(2 (1 + ν)) of steel, radius 10 mm, 200 and 600 mm long.
-    let by_hand = std::f64::consts::PI * 1e-8 * (210e9 / 2.6) / 2.0;
-    assert_close("shafts", 1e-14, [(pinion_shaft, by_hand / 0.2), (gear_shaft, by_hand / 0.6)]);
+    // G = E/(2 (1 + ν)) of steel, radius 10 mm, 200 and 600 mm long, each in series with the wheel's body of 15 mm between bore and root.
+    let (pi, shear) = (std::f64::consts::PI, 210e9 / 2.6);
+    let by_hand = |length_m: f64, root_mm: f64| {
+        let body = (1e4 - 1e6 / (root_mm * root_mm)) / (4.0 * pi * shear * 0.015);
+        1.0 / (length_m / (pi * 1e-8 * shear / 2.0) + body)
+    };
+    let expected = [by_hand(0.2, 21.75), by_hand(0.6, 53.25)];
+    assert_close("shafts", 1e-13, [pinion_shaft, gear_shaft].into_iter().zip(expected));
 }
