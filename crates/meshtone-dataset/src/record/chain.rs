@@ -51,12 +51,9 @@ fn growth<'a>(signals: impl Iterator<Item = &'a [f32]>) -> Option<f64> {
             *square += samples.iter().map(|&x| f64::from(x) * f64::from(x)).sum::<f64>();
         }
     }
-    let middle = |from: usize| {
-        let mut of_end = [squares[from], squares[from + 1], squares[from + 2]];
-        of_end.sort_by(f64::total_cmp);
-        of_end[1]
-    };
-    let (first, last) = (middle(0), middle(PARTS - 3));
+    let median = |a: f64, b: f64, c: f64| a.min(b).max(a.max(b).min(c));
+    let [a, b, c, .., x, y, z] = squares;
+    let (first, last) = (median(a, b, c), median(x, y, z));
     (last > MOST_GROWTH * MOST_GROWTH * first).then(|| (last / first).sqrt())
 }
 

@@ -135,10 +135,7 @@ impl<'a> NamedGears<'a> {
     /// The key that makes the wheels' bodies too soft, and what the user can do: `gears.foundation`, `mesh[0].wheels`.
     pub(crate) fn foundation(&self) -> (String, &'static str) {
         match &self.mesh {
-            None => (
-                self.key("foundation"),
-                "leave gears.foundation out for Sainsot's coefficients, or state its rotation = \"tooth\" if P is without the rotation of the body",
-            ),
+            None => (self.key("foundation"), "leave it out, or state rotation = \"tooth\" beside P"),
             Some(_) => (
                 self.whole(),
                 "change wheel.teeth, or shaft.radius_mm where the wheels sit, or leave mesh.foundation out",
