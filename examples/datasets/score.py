@@ -395,7 +395,8 @@ def broken(result: dict) -> list[str]:
         if any(after < before - 0.03 for before, after in zip(grades, grades[1:], strict=False)):
             found.append(f"{kind} is not monotonic in severity: {grades}")
     for shortcut, (value, least, _) in result["shortcuts"].items():
-        if not (value if shortcut in BOUNDS else least) <= BOUNDS.get(shortcut, (0.0, 0.5))[1]:
+        holds = value <= BOUNDS[shortcut][1] if shortcut in BOUNDS else least <= 0.5
+        if not holds:
             found.append(f"shortcut {shortcut}: {value}, from {least} on")
     return found
 

@@ -18,7 +18,7 @@ from meshtone.plotting import BLUE, GREY, ORANGE
 figure, ((force, acceleration), (growth, steps)) = plt.subplots(2, 2, figsize=(11, 7.2), layout="constrained")
 
 reference = json.loads(Path("python", "tests", "references", "ross_backlash.json").read_text(encoding="utf-8"))["both flanks"]
-simulation = mt.simulate(mt.Scenario.from_toml(reference["scenario"]).copy(sampling_rate_hz=1e5, foundation={"rotation": "tooth"}))
+simulation = mt.simulate(mt.Scenario.from_toml(reference["scenario"]).copy(sampling_rate_hz=1e5))
 first_s, last_s = reference["window_s"]
 window_s = np.linspace(first_s, last_s, len(reference["window_mesh_force_n"]))
 compared = (

@@ -10,9 +10,6 @@ from meshtone import Fault, MissingTooth, Scenario, ToothBreakage, examples, sim
 
 REFERENCES: dict[str, Any] = json.loads((ROOT / "python/tests/references/ross_backlash.json").read_text(encoding="utf-8"))
 
-# The references' meshes are those of bodies that turn with each pair of teeth.
-IN_TEETH = {"rotation": "tooth"}
-
 # Rms of the difference over the fluctuation, force and acceleration, at 1.76 MS/s: twice what is measured. The errors fall with the
 # step: at 6.6 MS/s they are a tenth.
 TOLERANCES = {"closed": (2e-3, 6e-4), "apart": (2e-3, 5e-3), "both flanks": (3e-3, 3e-4), "swinging load": (4e-4, 4e-4)}
@@ -21,7 +18,7 @@ TOLERANCES = {"closed": (2e-3, 6e-4), "apart": (2e-3, 5e-3), "both flanks": (3e-
 @pytest.mark.parametrize("case", TOLERANCES)
 def test_moves_as_a_machine_of_ross_under_runge_kutta(case: str) -> None:
     reference = REFERENCES[case]
-    simulation = simulate(Scenario.from_toml(reference["scenario"]).copy(foundation=IN_TEETH))
+    simulation = simulate(Scenario.from_toml(reference["scenario"]))
     # The reference's vertical movement is the mean of both supports.
     signals = {"mesh_force_n": simulation.mesh_force_n, "vertical_g": simulation.sensors["support_vertical"]}
     instants = np.array(reference["time_s"])
@@ -44,7 +41,7 @@ def test_moves_as_a_machine_of_ross_under_runge_kutta(case: str) -> None:
 
 
 def test_machine_has_the_natural_frequencies_of_ross() -> None:
-    simulation = simulate(Scenario.from_toml(REFERENCES["closed"]["scenario"]).copy(foundation=IN_TEETH, sampling_rate_hz=1e5))
+    simulation = simulate(Scenario.from_toml(REFERENCES["closed"]["scenario"]).copy(sampling_rate_hz=1e5))
     per_root_mass = 1 / np.sqrt(simulation.mass_diagonal)
     squares = np.linalg.eigvalsh(per_root_mass[:, None] * simulation.stiffness_matrix_open * per_root_mass)
     # The free rotation, at 0 Hz, may come out a little below.

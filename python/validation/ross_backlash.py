@@ -57,6 +57,7 @@ SCENARIO = """\
 model = "contact"
 
 [gears]
+foundation = {{ rotation = "tooth" }}
 module_mm = 3.0
 pinion_teeth = 17
 gear_teeth = 38

@@ -221,7 +221,7 @@ pub struct FoundationCoefficients {
     pub p: [f64; 6],
     /// (-) `A…F` of `Q`, the factor of `tan²α`.
     pub q: [f64; 6],
-    /// Where the rotation of the wheel's whole body is, which `P` has too. Default: in the machine. `published` leaves it in the teeth.
+    /// The place of the rotation of the wheel's whole body, which `P` has too. By default the machine has it; `published` has it in the teeth.
     pub rotation: BodyRotation,
 }
 

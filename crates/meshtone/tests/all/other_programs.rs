@@ -533,7 +533,7 @@ fn natural_frequencies_of_a_pair_with_8_coordinates() {
     }
 }
 
-// Without the mesh every wheel stands alone on its bearings and its shaft, which yields with its body; only the gear shares its shaft with the brake. The wheels
+// Without the mesh every wheel stands alone on its bearings and its shaft, in series with its body; only the gear shares its shaft with the brake. The wheels
 // are midway between their bearings, which do not give way.
 #[test]
 fn natural_frequencies_without_the_mesh() {
